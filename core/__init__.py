@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Geometry and the nouns: pure functions on frozen values, with numpy and OpenCV alone.
+
+Importing this loads the nouns only; the modules that measure pictures (`find`, `pictures`) import
+OpenCV and are imported where they are used.
+"""
+
+from .appearance import Appearance
+from .camera import Camera
+from .cell import Cell
+from .distortion import Distortion
+from .errors import MonocellError
+from .intrinsics import Intrinsics
+from .pose import Pose
+from .primitives import Box, Cylinder, Primitive
+from .reference import ReferenceLine, ReferencePlane
+from .sighting import SphereSighting
+from .sketch import Sketch
+
+__all__ = [
+    "Appearance",
+    "Box",
+    "Camera",
+    "Cell",
+    "Cylinder",
+    "Distortion",
+    "Intrinsics",
+    "MonocellError",
+    "Pose",
+    "Primitive",
+    "ReferenceLine",
+    "ReferencePlane",
+    "Sketch",
+    "SphereSighting",
+]

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The whole of a work cell: camera, picture, ball sightings, references and objects."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from .camera import Camera
+from .errors import InvalidValue
+from .primitives import Primitive
+from .reference import ReferenceLine, ReferencePlane
+from .sighting import SphereSighting
+from .sketch import Sketch
+
+Reference = ReferencePlane | ReferenceLine
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """One cell document. Picture names are relative to `folder`, the document's place.
+
+    `objects` are solved; `sketches` are picked only, and become objects when they are solved.
+
+    Raises InvalidValue when two references or two objects share a name, or an object stands on a
+    reference that is not there.
+    """
+
+    camera: Camera
+    picture: str | None = None
+    sightings: tuple[SphereSighting, ...] = ()
+    references: tuple[Reference, ...] = ()
+    objects: tuple[Primitive, ...] = ()
+    sketches: tuple[Sketch, ...] = ()
+    folder: Path = Path(".")
+
+    def __post_init__(self) -> None:
+        for field, nouns in (
+            ("references", self.references),
+            ("objects", (*self.objects, *self.sketches)),
+        ):
+            _refuse_twins(field, (noun.name for noun in nouns))
+        known = {reference.name for reference in self.references}
+        for i, thing in enumerate((*self.objects, *self.sketches)):
+            if thing.on is not None and thing.on not in known:
+                listed = ", ".join(sorted(known)) or "none at all"
+                raise InvalidValue(
+                    f"objects[{i}].on: no reference is called {thing.on!r}; there is {listed}"
+                )
+
+    def path_of(self, picture: str) -> Path:
+        """The file of a picture named in the document."""
+        return self.folder / picture
+
+    def with_camera(self, camera: Camera) -> Cell:
+        return replace(self, camera=camera)
+
+    def with_objects(self, objects: Iterable[Primitive]) -> Cell:
+        return replace(self, objects=tuple(objects))
+
+    def reference(self, name: str) -> Reference:
+        """The reference of that name. Raises InvalidValue."""
+        for reference in self.references:
+            if reference.name == name:
+                return reference
+        raise InvalidValue(f"no reference is called {name!r}")
+
+
+def _refuse_twins(field: str, names: Iterable[str]) -> None:
+    seen: dict[str, int] = {}
+    for i, name in enumerate(names):
+        if name in seen:
+            raise InvalidValue(f"{field}[{i}].name: {name!r} is also {field}[{seen[name]}]'s name")
+        seen[name] = i

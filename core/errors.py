@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The named refusals: each carries the numbers that led to it and what to do next."""
+
+
+class MonocellError(Exception):
+    """Base of everything monocell refuses; its message is one line fit to show a user."""
+
+
+class InvalidValue(MonocellError):
+    """A number is outside what the geometry allows (NaN, negative radius, skewed rotation)."""
+
+
+class DocumentError(MonocellError):
+    """A document or camera file can't be read; the message begins with the path of the field."""
+
+
+class PictureError(MonocellError):
+    """A picture is missing, truncated, or not of the camera's size."""
+
+
+class NoPose(MonocellError):
+    """A camera pose is needed and the camera has none yet."""
+
+
+class SphereNotFound(MonocellError):
+    """No ball outline, or none that can be believed, was found where it was looked for."""
+
+
+class SphereCut(SphereNotFound):
+    """The ball leaves the picture, so that too little of its outline is left."""
+
+
+class TooFewSightings(MonocellError):
+    """Fewer sightings than a pose needs."""
+
+
+class DegeneratePositions(MonocellError):
+    """The ball's positions lie on a line or in one place, which leaves the pose undetermined."""
+
+
+class PickError(MonocellError):
+    """A picked pixel can't mean what it was picked for (above the horizon, behind the camera)."""
+
+
+class NotConverged(MonocellError):
+    """A least-squares problem found no minimum: the numbers given contradict each other."""
