@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from .arrays import Array, frozen
 from .errors import InvalidValue
 
@@ -21,6 +19,6 @@ class Appearance:
         color = frozen(self.color, (3,), "appearance.color")
         if (color < 0).any() or (color > 1).any():
             raise InvalidValue(
-                f"appearance.color: each part must be from 0 to 1, got {np.round(color, 4).tolist()}"
+                f"appearance.color: each part must be from 0 to 1, got {color.round(4).tolist()}"
             )
         object.__setattr__(self, "color", color)

@@ -33,16 +33,14 @@ class Cell:
     references: tuple[Reference, ...] = ()
     objects: tuple[Primitive, ...] = ()
     sketches: tuple[Sketch, ...] = ()
-    folder: Path = Path(".")
+    folder: Path = Path()
 
     def __post_init__(self) -> None:
-        for field, nouns in (
-            ("references", self.references),
-            ("objects", (*self.objects, *self.sketches)),
-        ):
-            _refuse_twins(field, (noun.name for noun in nouns))
+        things: tuple[Primitive | Sketch, ...] = (*self.objects, *self.sketches)
+        _refuse_twins("references", (reference.name for reference in self.references))
+        _refuse_twins("objects", (thing.name for thing in things))
         known = {reference.name for reference in self.references}
-        for i, thing in enumerate((*self.objects, *self.sketches)):
+        for i, thing in enumerate(things):
             if thing.on is not None and thing.on not in known:
                 listed = ", ".join(sorted(known)) or "none at all"
                 raise InvalidValue(

@@ -57,7 +57,7 @@ class Intrinsics:
         return np.array([[self.fx, 0, self.cx], [0, self.fy, self.cy], [0, 0, 1.0]])
 
     def undistorted(self) -> Intrinsics:
-        """The same camera with a perfect lens: what the picture behind the viewport is made with."""
+        """The same camera with a perfect lens: that of the picture behind the viewport."""
         return Intrinsics(self.width, self.height, self.fx, self.fy, self.cx, self.cy)
 
     def project(self, points_camera: ArrayLike) -> Array:
@@ -93,7 +93,7 @@ class Intrinsics:
         return rays, transposed @ _inverses(jacobian @ transposed)
 
     def contains(self, pixels: ArrayLike) -> Mask:
-        """Which pixels (N, 2) lie in the picture, whose edges are half a pixel outside the centres."""
+        """Which pixels (N, 2) lie in the picture: it ends half a pixel outside the outer centres."""
         p = np.asarray(pixels, dtype=float)
         inside: Mask = (
             (p[:, 0] >= -0.5)

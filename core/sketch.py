@@ -18,8 +18,8 @@ KINDS: dict[str, type[Primitive]] = {"box": Box, "cylinder": Cylinder}
 class Sketch:
     """What the operator said of an object: its kind, its reference, pixels, and known sizes.
 
-    `known` maps size names (`height`, `radius`, `size_z`, ...) to metres that were measured or typed
-    and are not to be solved for.
+    `known` maps size names (`height`, `radius`, `size_z`, ...) to metres that were measured or
+    typed and are not to be solved for.
     """
 
     name: str
