@@ -93,7 +93,7 @@ class Intrinsics:
         return rays, transposed @ _inverses(jacobian @ transposed)
 
     def contains(self, pixels: ArrayLike) -> Mask:
-        """Which pixels (N, 2) lie in the picture: it ends half a pixel outside the outer centres."""
+        """Which pixels (N, 2) lie in the picture, half a pixel of rim included."""
         p = np.asarray(pixels, dtype=float)
         inside: Mask = (
             (p[:, 0] >= -0.5)
