@@ -36,16 +36,20 @@ class Cell:
     folder: Path = Path()
 
     def __post_init__(self) -> None:
-        things: tuple[Primitive | Sketch, ...] = (*self.objects, *self.sketches)
         _refuse_twins("references", (reference.name for reference in self.references))
-        _refuse_twins("objects", (thing.name for thing in things))
+        _refuse_twins("objects", (thing.name for thing in self.things))
         known = {reference.name for reference in self.references}
-        for i, thing in enumerate(things):
+        for i, thing in enumerate(self.things):
             if thing.on is not None and thing.on not in known:
                 listed = ", ".join(sorted(known)) or "none at all"
                 raise InvalidValue(
                     f"objects[{i}].on: no reference is called {thing.on!r}; there is {listed}"
                 )
+
+    @property
+    def things(self) -> tuple[Primitive | Sketch, ...]:
+        """Objects, then sketches: the order in which a document lists them."""
+        return (*self.objects, *self.sketches)
 
     def path_of(self, picture: str) -> Path:
         """The file of a picture named in the document."""
