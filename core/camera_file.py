@@ -36,7 +36,7 @@ def read_camera(path: str | Path) -> Camera:
         if file.suffix.lower() == ".json":
             return _from_json(file)
         start = _beginning(file)
-        if start.startswith("%YAML:1.0") or start.startswith("<?xml") or "<opencv" in start:
+        if start.startswith(("%YAML:1.0", "<?xml")) or "<opencv" in start:
             return _from_opencv(file)
         return _from_ros(_parse_yaml(file))
     except (DocumentError, InvalidValue) as error:

@@ -19,8 +19,9 @@ from .radial import RadialProfile
 
 COEFFICIENTS = {"none": 0, "plumb_bob": 5, "rational_polynomial": 8, "equidistant": 4}
 NEWTON_STEPS = 25
-# Newton's error squares itself: after a step this small nothing is left
-CONVERGED = 1e-9
+# Newton's error squares itself: after a step this small less than 1e-9 px is left
+CONVERGED = 3e-7
+FOLD_START = 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,10 +78,13 @@ class Distortion:
         d = np.asarray(distorted, dtype=float)
         if self.model == "equidistant":
             return self._fisheye_rays(d)
-        plane = d if self.model == "none" else self._undistort_polynomial(d)
-        x, y = plane[:, 0], plane[:, 1]
-        scale = 1.0 / np.sqrt(x * x + y * y + 1.0)
-        return np.stack([x * scale, y * scale, scale], axis=1)
+        plain = self.model == "none"
+        x, y = (d[:, 0], d[:, 1]) if plain else self._undistort_polynomial(d)
+        rays = np.empty((len(d), 3))
+        rays[:, 2] = 1.0 / np.sqrt(x * x + y * y + 1.0)
+        np.multiply(x, rays[:, 2], out=rays[:, 0])
+        np.multiply(y, rays[:, 2], out=rays[:, 1])
+        return rays
 
     # -- the forward map ------------------------------------------------------------------------
 
@@ -155,30 +159,51 @@ class Distortion:
     # -- the inverse map ------------------------------------------------------------------------
 
     def _fisheye_rays(self, d: Array) -> Array:
-        radius = np.hypot(d[:, 0], d[:, 1])
+        x, y = d[:, 0], d[:, 1]
+        radius = np.sqrt(x * x + y * y)
         angle = self._profile.undistorted(radius)
+        # sin(angle) / radius tends to 1 on the axis
         scale = np.where(radius < 1e-300, 1.0, np.sin(angle) / np.maximum(radius, 1e-300))
-        return np.stack([d[:, 0] * scale, d[:, 1] * scale, np.cos(angle)], axis=1)
+        rays = np.empty((len(d), 3))
+        np.multiply(x, scale, out=rays[:, 0])
+        np.multiply(y, scale, out=rays[:, 1])
+        np.cos(angle, out=rays[:, 2])
+        return rays
 
-    def _undistort_polynomial(self, d: Array) -> Array:
-        radius = np.hypot(d[:, 0], d[:, 1])
-        start = self._profile.undistorted_roughly(radius)
-        ratio = np.where(radius > 0, start / np.maximum(radius, 1e-300), 1.0)
-        x, y = d[:, 0] * ratio, d[:, 1] * ratio
+    def _undistort_polynomial(self, d: Array) -> tuple[Array, Array]:
+        xd: Array = d[:, 0].copy()
+        yd: Array = d[:, 1].copy()
+        ratio = self._profile.ratio_roughly(np.square(xd) + np.square(yd))
+        x, y = xd * ratio, yd * ratio
+        self._newton_step(x, y, xd, yd)
+        step = self._newton_step(x, y, xd, yd)
+        # two steps end it but near a fold: there they start again from further in, whence Newton
+        # climbs without overshooting (the curve is concave)
+        slow = np.flatnonzero(~(step <= CONVERGED))
+        inner = FOLD_START * ratio[slow]
+        x[slow], y[slow] = xd[slow] * inner, yd[slow] * inner
         for _ in range(NEWTON_STEPS):
-            (xd, yd), (a, b, c) = self._polynomial(x, y)
-            ex, ey = d[:, 0] - xd, d[:, 1] - yd
-            determinant = a * c - b * b
-            dx, dy = (c * ex - b * ey) / determinant, (a * ey - b * ex) / determinant
-            x, y = x + dx, y + dy
-            step = np.maximum(np.abs(dx), np.abs(dy))
-            if not (step > CONVERGED).any():
+            if not len(slow):
                 break
-        undistorted = np.stack([x, y], axis=1)
+            xs, ys = x[slow], y[slow]
+            step = self._newton_step(xs, ys, xd[slow], yd[slow])
+            x[slow], y[slow] = xs, ys
+            slow = slow[~(step <= CONVERGED)]
         # no ray reaches a pixel past the fold: Newton then wanders, or lands beyond the limit
-        lost = ~(step <= CONVERGED) | (x * x + y * y > self._profile.limit**2)
-        undistorted[lost] = np.nan
-        return undistorted
+        x[slow] = np.nan
+        x[x * x + y * y > self._profile.limit**2] = np.nan
+        y[np.isnan(x)] = np.nan
+        return x, y
+
+    def _newton_step(self, x: Array, y: Array, xd: Array, yd: Array) -> Array:
+        """Move x, y in place; the length of the move, (N,), is returned."""
+        (at_x, at_y), (a, b, c) = self._polynomial(x, y)
+        ex, ey = np.subtract(xd, at_x, out=at_x), np.subtract(yd, at_y, out=at_y)
+        scale = 1.0 / (a * c - b * b)
+        dx, dy = (c * ex - b * ey) * scale, (a * ey - b * ex) * scale
+        x += dx
+        y += dy
+        return np.maximum(np.abs(dx, out=dx), np.abs(dy, out=dy))
 
 
 def _pinhole(rays: Array) -> tuple[Array, Array]:

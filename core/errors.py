@@ -44,3 +44,23 @@ class PickError(MonocellError):
 
 class NotConverged(MonocellError):
     """A least-squares problem found no minimum: the numbers given contradict each other."""
+
+
+class RenderFailed(MonocellError):
+    """Blender ended a render or an export without the file that was asked for."""
+
+
+class MissingPackage(MonocellError):
+    """An optional package that the job needs is not installed."""
+
+
+class Unreachable(MonocellError):
+    """No joint angles within the limits bring the arm where it is asked to be."""
+
+
+class InCollision(MonocellError):
+    """The arm touches something, or comes too near, where it has to start or to end."""
+
+
+class NoPath(MonocellError):
+    """No path was found that keeps its distance from everything."""

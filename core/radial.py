@@ -12,6 +12,10 @@ from numpy.polynomial import polynomial as poly
 from .arrays import Array
 
 TABLE_NODES = 2048
+RATIO_NODES = 8192
+NEWTON_STEPS = 8
+# rd^2 up to here is found by index: all of a fisheye, 72 degrees of a pinhole; beyond, by search
+WIDEST_RATIO_TABLE = 10.0
 # a polynomial that never folds is tabulated up to this radius (an angle of 84 degrees)
 WIDEST_PLANE_RADIUS = 10.0
 # rays behind the image plane of a fisheye still hit it, up to straight backwards
@@ -71,18 +75,48 @@ class RadialProfile:
         gain, by_s = self.gain_and_slope(r * r)
         return gain + 2 * r * r * by_s
 
-    def undistorted_roughly(self, rd: Array) -> Array:
-        """The inverse from a table, to about 1e-6: a start for Newton's method."""
-        nodes, values = self._table
-        return np.interp(rd, values, nodes)
+    def ratio_roughly(self, rd2: Array) -> Array:
+        """r / rd to about 1e-7 from a table over rd^2: a start for Newton's method."""
+        table, cells_per_unit = self._ratio_table
+        place = rd2 * cells_per_unit
+        np.minimum(place, len(table) - 1.001, out=place)
+        # NaN has no cell; any start will do, for NaN is what Newton makes of it
+        cell = np.nan_to_num(place, copy=False).astype(np.intp)
+        place -= cell
+        low = table.take(cell)
+        ratio: Array = low + place * (table.take(cell + 1) - low)
+        beyond = rd2 > WIDEST_RATIO_TABLE
+        if beyond.any():
+            radius = np.sqrt(rd2[beyond])
+            ratio[beyond] = np.interp(radius, self._table[1], self._table[0]) / radius
+        return ratio
 
     def undistorted(self, rd: Array) -> Array:
         """The exact inverse; NaN beyond what the curve reaches."""
-        r = self.undistorted_roughly(rd)
-        for _ in range(4):
-            gain, _ = self.gain_and_slope(r * r)
-            r = r - (r * gain - rd) / np.maximum(self.slope(r), 1e-6)
-        return np.where(rd <= self._table[1][-1] * (1 + 1e-12), r, np.nan)
+        r = self._newton(rd * self.ratio_roughly(rd * rd), rd)
+        r[~(rd <= self._table[1][-1] * (1 + 1e-12))] = np.nan
+        return r
+
+    def _newton(self, r: Array, rd: Array) -> Array:
+        for _ in range(NEWTON_STEPS):
+            s = r * r
+            gain, by_s = self.gain_and_slope(s)
+            slope = gain + 2 * s * by_s
+            step = (r * gain - rd) / np.maximum(slope, 1e-6, out=slope)
+            r = r - step
+            # the error squares itself with every step: less than 1e-12 is left
+            if not (np.abs(step, out=step) > 1e-7).any():
+                break
+        return r
+
+    @cached_property
+    def _ratio_table(self) -> tuple[Array, float]:
+        """Values of r / rd at equal steps of rd^2, and how many steps there are to a unit."""
+        reach = min(float(self._table[1][-1]) ** 2, WIDEST_RATIO_TABLE)
+        rd = np.sqrt(np.linspace(0.0, reach, RATIO_NODES))
+        r = self._newton(np.interp(rd, self._table[1], self._table[0]), rd)
+        ratio = np.divide(r, rd, out=np.ones_like(r), where=rd > 0)
+        return ratio, (RATIO_NODES - 1) / reach
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:

@@ -9,8 +9,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from .arrays import Array, frozen
 from .errors import InvalidValue
+from .pose import Pose
+
+# sine of the tilt (about 2 degrees) up to which a plane counts as a floor
+NEARLY_LEVEL = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +30,20 @@ class ReferencePlane:
     def __post_init__(self) -> None:
         object.__setattr__(self, "point", frozen(self.point, (3,), f"{self.name}: point"))
         object.__setattr__(self, "normal", _unit(self.normal, f"{self.name}: normal"))
+
+    @property
+    def world_from_plane(self) -> Pose:
+        """A frame on the plane: origin at `point`, z along the normal, x level.
+
+        On a floor or ceiling, where every direction is level, x follows the world's x.
+        """
+        level = np.cross([0.0, 0.0, 1.0], self.normal)
+        if np.linalg.norm(level) < NEARLY_LEVEL:
+            level = np.array([1.0, 0.0, 0.0])
+        x = level - self.normal * (level @ self.normal)
+        x = x / np.linalg.norm(x)
+        rotation = np.stack([x, np.cross(self.normal, x), self.normal], axis=1)
+        return Pose(rotation, self.point)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A ball's outline measured to a fraction of a pixel: a rough sphere in, the fitted one out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from .arrays import Array, Mask
+from .errors import SphereCut, SphereNotFound
+from .intrinsics import Intrinsics
+from .limb import LimbEdges, find_limb, sample_offsets
+from .pictures import Light
+from .robust import correlation_inflation, robust_sigma, tukey_weights
+from .sphere import OutlineRays, Tangency, outline_pixels, tangency
+
+MOST_POINTS, FEWEST_POINTS = 400, 48
+BLURS = np.array([0.4, 0.5, 0.6, 0.72, 0.87, 1.05, 1.3, 1.7, 2.3, 3.0])
+# an edge has to explain its profile this much better than no edge, in units of the noise
+SIGNIFICANT_GAIN = 25.0
+# what a perfect edge is still uncertain by: sampling, the model of the limb
+FLOOR_PIXELS = 0.02
+LEAST_COVERAGE, DOUBTFUL_COVERAGE = 0.35, 0.5
+LARGEST_CUT = 0.25
+# edges belong to the outline when they lie in this band (pixels, or share of the radius: real balls
+# are not round to more than half a percent), though they were looked for in a much wider one
+BELONGS_PIXELS, BELONGS_SHARE = 0.6, 0.005
+JUDGED_SHARE, JUDGED_PIXELS = 0.06, 4.0
+MOST_INDEPENDENT = 300.0
+
+
+@dataclass(frozen=True, eq=False)
+class SphereOutline:
+    """A ball found in a picture.
+
+    - `centre_camera` (3,) in metres and `covariance` (3, 3) of it, for the `radius` given
+    - `pixels` (N, 2): outline points measured, `sigma_pixels` (N,) of each along its normal,
+      `residual_pixels` (N,) outwards from the fitted outline, `used` (N,): not outvoted
+    - `coverage`: share of the whole outline whose edge was found where it should be, and
+      `evidence`: by how many sigmas that is more than chance
+    - `cut`: share of the outline that lies outside the picture
+    - `rms_pixels` of the used residuals; `blur_pixels`: sigma of the picture's sharpness
+    """
+
+    centre_camera: Array
+    covariance: Array
+    radius: float
+    pixels: Array
+    sigma_pixels: Array
+    residual_pixels: Array
+    used: Mask
+    coverage: float
+    evidence: float
+    cut: float
+    rms_pixels: float
+    blur_pixels: float
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class _Measured:
+    """One pass around the outline: where edges are, how sure, and which profiles lie inside."""
+
+    pixels: Array
+    edges: LimbEdges
+    noise: float
+    inside: Mask
+
+
+class OutlineMeter:
+    """Measures outlines in one picture of linear light (H, W, 3) whose corner is `origin` (2,)."""
+
+    def __init__(self, light: Light, origin: Array, intrinsics: Intrinsics, radius: float) -> None:
+        self._light, self._origin = light, origin
+        self._intrinsics, self._radius = intrinsics, radius
+
+    def measure(self, rough_centre: Array) -> SphereOutline:
+        """The sphere whose outline lies near that of `rough_centre` (3,), in the camera frame.
+
+        Raises SphereNotFound when too little of the outline has an edge where it should be, and
+        SphereCut when too much of it lies outside the picture.
+        """
+        centre, blur, contrast = rough_centre, 0.8, 0.1
+        for search in (4.0, 3.0):
+            measured = self._pass(centre, search, blur, contrast)
+            centre, contrast = self._fitted(centre, measured), _noise_to_contrast(measured)
+        blur = self._sharpness(centre, contrast)
+        for search in (2.0, 1.5):
+            measured = self._pass(centre, search, blur, contrast)
+            centre, contrast = self._fitted(centre, measured), _noise_to_contrast(measured)
+        coverage, evidence = self._coverage(centre, blur, contrast)
+        return self._judged(centre, measured, blur, coverage, evidence)
+
+    def _pass(
+        self, centre: Array, search: float, blur: float, contrast: float, every: int = 1
+    ) -> _Measured:
+        size = self._size_pixels(centre)
+        count = int(np.clip(2 * np.pi * size, FEWEST_POINTS, MOST_POINTS)) // every
+        middle = outline_pixels(self._intrinsics, centre, self._radius, count)
+        if not np.isfinite(middle).all():
+            raise SphereNotFound("part of the outline lies outside what the lens images")
+        normals = tangency(OutlineRays.of(self._intrinsics, middle), centre, self._radius).normals
+        reach = min(max(4.0, 2.5 * blur + 2.0, search + 2.5), 0.6 * size)
+        search = min(search, 0.5 * reach)
+        offsets = sample_offsets(reach)
+        at = middle[:, None] + normals[:, None] * offsets[:, None]
+        inside = self._intrinsics.contains(at[:, 0]) & self._intrinsics.contains(at[:, -1])
+        profiles = self._sampled(at)
+        edges = find_limb(profiles, reach, search, blur, size, contrast)
+        freedom = max(1, len(offsets) * profiles.shape[2] - 4 * profiles.shape[2] - 1)
+        noise = float(np.sqrt(max(np.median(edges.misfits) / freedom, 1e-12)))
+        pixels = middle + normals * edges.offsets_pixels[:, None]
+        return _Measured(pixels, edges, noise, inside)
+
+    def _sampled(self, at: Array) -> Array:
+        places = (at - self._origin).astype(np.float32)
+        sampled = cv2.remap(
+            self._light,
+            places[..., 0],
+            places[..., 1],
+            cv2.INTER_CUBIC,
+            borderMode=cv2.BORDER_REPLICATE,
+        )
+        return sampled.reshape(*places.shape[:2], -1).astype(float)
+
+    def _size_pixels(self, centre: Array) -> float:
+        focal = 0.5 * (self._intrinsics.fx + self._intrinsics.fy)
+        distance = float(np.linalg.norm(centre))
+        return float(np.tan(np.arcsin(min(0.999, self._radius / distance))) * focal)
+
+    def _sigmas(self, measured: _Measured) -> Array:
+        spread = 2 * measured.noise**2 / measured.edges.curvatures
+        return np.sqrt(spread + FLOOR_PIXELS**2)
+
+    def _candidates(self, measured: _Measured) -> Mask:
+        significant = measured.edges.gains > SIGNIFICANT_GAIN * measured.noise**2
+        candidates: Mask = significant & measured.inside
+        if candidates.sum() < 8:
+            if measured.inside.mean() < 1 - LARGEST_CUT:
+                raise _cut_refusal(1 - float(measured.inside.mean()))
+            raise SphereNotFound(
+                f"only {int(candidates.sum())} of {len(candidates)} places of the outline have an "
+                "edge that stands out of the noise"
+            )
+        return candidates
+
+    def _fitted(self, centre: Array, measured: _Measured) -> Array:
+        """The sphere through the edges, by reweighted Gauss-Newton steps."""
+        candidates = self._candidates(measured)
+        outline = OutlineRays.of(self._intrinsics, measured.pixels[candidates])
+        sigma = self._sigmas(measured)[candidates]
+        for _ in range(6):
+            held = tangency(outline, centre, self._radius)
+            scaled = held.residual_pixels / sigma
+            weights = tukey_weights(scaled, robust_sigma(scaled)) / sigma**2
+            root = np.sqrt(weights)
+            step = np.linalg.lstsq(
+                held.by_centre * root[:, None], held.residual_pixels * root, rcond=None
+            )[0]
+            centre = centre - step
+            if not np.isfinite(centre).all() or np.linalg.norm(centre) < 1.01 * self._radius:
+                raise SphereNotFound("the edges around the guess form no outline of a ball")
+            if np.linalg.norm(step) < 1e-7 * np.linalg.norm(centre):
+                break
+        return centre
+
+    def _sharpness(self, centre: Array, contrast: float) -> float:
+        """The blur that explains the profiles best, between the steps by a parabola."""
+        every = 3 if self._size_pixels(centre) > 40 else 1
+        left = []
+        for blur in BLURS:
+            measured = self._pass(centre, 1.5, float(blur), contrast, every)
+            # the worst profiles cross a finger or a texture and tell nothing of the sharpness
+            kept = np.sort(measured.edges.misfits[self._candidates(measured)])
+            left.append(kept[: max(6, int(0.7 * len(kept)))].mean())
+        i = int(np.clip(np.argmin(left), 1, len(BLURS) - 2))
+        a, b, _ = np.polyfit(np.log(BLURS[i - 1 : i + 2]), left[i - 1 : i + 2], 2)
+        best = np.exp(-b / (2 * a)) if a > 0 else BLURS[np.argmin(left)]
+        return float(np.clip(best, BLURS[i - 1], BLURS[i + 1]))
+
+    def _coverage(self, centre: Array, blur: float, contrast: float) -> tuple[float, float]:
+        """The share of the outline whose strongest edge, looked for far around, lies on it.
+
+        Beside it the evidence: by how many sigmas that is more than edges anywhere would give.
+        """
+        size = self._size_pixels(centre)
+        search = max(min(JUDGED_PIXELS, 0.3 * size), JUDGED_SHARE * size)
+        measured = self._pass(centre, search, blur, contrast)
+        outline = OutlineRays.of(self._intrinsics, measured.pixels)
+        outside = tangency(outline, centre, self._radius).residual_pixels
+        spread = 3 * np.sqrt(2 * measured.noise**2 / measured.edges.curvatures)
+        band = max(BELONGS_PIXELS, BELONGS_SHARE * size) + np.minimum(spread, BELONGS_PIXELS)
+        significant = measured.edges.gains > SIGNIFICANT_GAIN * measured.noise**2
+        coverage = float((significant & measured.inside & (np.abs(outside) < band)).mean())
+        chance = float(np.clip(band.mean() / search, 0.01, 0.9))
+        independent = min(2 * np.pi * size, MOST_INDEPENDENT)
+        return coverage, (coverage - chance) / np.sqrt(chance * (1 - chance) / independent)
+
+    def _judged(
+        self, centre: Array, measured: _Measured, blur: float, coverage: float, evidence: float
+    ) -> SphereOutline:
+        candidates = self._candidates(measured)
+        outline = OutlineRays.of(self._intrinsics, measured.pixels[candidates])
+        held = tangency(outline, centre, self._radius)
+        sigma = self._sigmas(measured)[candidates]
+        scaled = held.residual_pixels / sigma
+        scale = robust_sigma(scaled)
+        used = tukey_weights(scaled, scale) > 0.1
+        size = self._size_pixels(centre)
+        cut = 1 - float(measured.inside.mean())
+        _refuse_little(coverage, cut)
+        inflation = correlation_inflation(held.residual_pixels, used)
+        sigma = sigma * scale * np.sqrt(inflation)
+        rms = float(np.sqrt(np.mean(held.residual_pixels[used] ** 2)))
+        return SphereOutline(
+            centre,
+            _covariance(held, sigma, used),
+            self._radius,
+            measured.pixels[candidates],
+            sigma,
+            held.residual_pixels,
+            used,
+            coverage,
+            evidence,
+            cut,
+            rms,
+            blur,
+            _doubts(coverage, cut, rms, size),
+        )
+
+
+def _noise_to_contrast(measured: _Measured) -> float:
+    contrast = np.sqrt(np.median(measured.edges.gains) / 10)
+    return float(measured.noise / max(contrast, 1e-6))
+
+
+def _covariance(held: Tangency, sigma: Array, used: Mask) -> Array:
+    rows = held.by_centre[used] / sigma[used, None]
+    covariance: Array = np.linalg.inv(rows.T @ rows)
+    return covariance
+
+
+def _cut_refusal(cut: float) -> SphereCut:
+    return SphereCut(
+        f"the ball is cut by the border: {100 * cut:.0f} % of its outline lies outside the picture "
+        f"(at most {100 * LARGEST_CUT:.0f} % may); use a picture that shows more of it"
+    )
+
+
+def _refuse_little(coverage: float, cut: float) -> None:
+    if cut > LARGEST_CUT:
+        raise _cut_refusal(cut)
+    if coverage < LEAST_COVERAGE:
+        raise SphereNotFound(
+            f"only {100 * coverage:.0f} % of the outline has an edge where a ball has one "
+            f"(at least {100 * LEAST_COVERAGE:.0f} % is needed)"
+        )
+
+
+def _doubts(coverage: float, cut: float, rms: float, size: float) -> tuple[str, ...]:
+    doubts = []
+    if coverage < DOUBTFUL_COVERAGE:
+        doubts.append(f"only {100 * coverage:.0f} % of the outline is seen")
+    if cut > 0.01:
+        doubts.append(f"the border cuts {100 * cut:.0f} % of the outline")
+    if rms > max(0.5, 0.01 * size):
+        doubts.append(f"the outline is {rms:.2f} px rms off a sphere's: is it round?")
+    return tuple(doubts)
