@@ -9,6 +9,7 @@ pixels of its level, so that a ball of 8 pixels and one of 400 cost the same few
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
@@ -24,7 +25,7 @@ EDGE_OVER_MEDIAN = 3.0
 WEAKEST_EDGE, STRONGEST_THRESHOLD = 16.0, 48.0
 CANDIDATES_PER_LEVEL = 6
 
-Grey = NDArray[np.uint8]
+Grey = NDArray[Any]
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ def vote_for_circles(
     """Rough circles in an 8-bit picture (H, W, 3), radii in pixels from `smallest` to `largest`."""
     biggest = largest or 0.6 * max(picture.shape[:2])
     found: list[Circle] = []
-    scale, level = 1.0, picture
+    scale, level = 1.0, np.asarray(picture)
     while LEVEL_RADII[0] * scale <= biggest and min(level.shape[:2]) >= 16:
         if LEVEL_RADII[-1] * scale >= smallest:
             radii = np.concatenate([SMALL_RADII, LEVEL_RADII]) if scale == 1 else LEVEL_RADII
@@ -99,9 +100,7 @@ def _edge_pixels(picture: Grey) -> tuple[Array, Array, Array, Array]:
     return u.astype(float), v.astype(float), du[v, u] / norm, dv[v, u] / norm
 
 
-def _strongest_channel(
-    du: NDArray[np.int16], dv: NDArray[np.int16]
-) -> tuple[NDArray[np.int16], NDArray[np.int16]]:
+def _strongest_channel(du: NDArray[Any], dv: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
     strength = np.abs(du) + np.abs(dv)
     best_u, best_v, best = du[..., 0], dv[..., 0], strength[..., 0]
     for channel in range(1, du.shape[2]):

@@ -32,7 +32,7 @@ SHIFT = 6
 # pixels of a picture's diagonal to one pixel of line width, and to one of a capital letter
 DIAGONAL_PER_LINE = 800.0
 DIAGONAL_PER_CAPITAL = 110.0
-HALO_OPACITY, HIDDEN_OPACITY = 0.55, 0.5
+HALO_OPACITY, HIDDEN_OPACITY = 0.55, 0.7
 SMALLEST_CAPITAL = 7.0
 
 

@@ -23,6 +23,8 @@ SHRINK = 4
 # pixels of a capital letter at scale 1
 CAPITAL = 22.0
 PAPER: Color = (28, 24, 22)
+# a mask has one channel
+WHITE = (255,)
 INK: Color = (245, 245, 245)
 OPACITY = 0.78
 
@@ -100,8 +102,9 @@ def place_label(
         (right + gap, bottom + gap),
         (left - gap - width, bottom + gap),
     ]
-    room = np.array(picture_size) - [width, height]
-    places = [np.clip(wish, 0, np.maximum(room, 0)).round() for wish in wishes]
+    rim = gap / 2
+    room = np.maximum(np.array(picture_size) - [width + rim, height + rim], rim)
+    places = [np.clip(wish, rim, room).round() for wish in wishes]
     boxes = [np.array([*p, p[0] + width, p[1] + height]) for p in places]
     # the earlier place wins between equals, and lying on the object itself is the last resort
     costs = [
@@ -157,12 +160,12 @@ def _write_part(
         "⌀": [(-1.2 * arm, 0.02, 1.2 * arm, -0.92)],
     }
     if part not in strokes:
-        cv2.putText(canvas, part, at, FONT, scale, 255, stroke, cv2.LINE_AA)
+        cv2.putText(canvas, part, at, FONT, scale, WHITE, stroke, cv2.LINE_AA)
         return
     if part == "⌀":
         centre = (round(middle), round(base - 0.45 * unit))
-        cv2.circle(canvas, centre, round(0.36 * unit), 255, stroke, cv2.LINE_AA)
+        cv2.circle(canvas, centre, round(0.36 * unit), WHITE, stroke, cv2.LINE_AA)
     for x0, y0, x1, y1 in strokes[part]:
         start = (round(middle + x0), round(base + y0 * unit))
         end = (round(middle + x1), round(base + y1 * unit))
-        cv2.line(canvas, start, end, 255, stroke, cv2.LINE_AA)
+        cv2.line(canvas, start, end, WHITE, stroke, cv2.LINE_AA)

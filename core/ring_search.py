@@ -145,8 +145,8 @@ def _first(profile: NDArray[np.intp]) -> NDArray[np.intp]:
     return np.searchsorted(profile, profile)
 
 
-def _edges_around(pyramid: Pyramid, circle: Circle, span: Span) -> tuple[Array, NDArray[np.intp]]:
-    """Pixels (M, 2) of the strongest changes along each profile, and the profile of each."""
+def _edges_around(pyramid: Pyramid, circle: Circle, span: Span) -> _Edges:
+    """The strongest changes along each profile."""
     index = max(0, int(np.floor(np.log2(circle.radius / span.working_radius))))
     scale = 2.0**index
     picture = pyramid.level(index)

@@ -18,8 +18,8 @@ def robust_sigma(residuals: Array) -> float:
 
 def tukey_weights(residuals: Array, sigma: float) -> Array:
     """Tukey's biweight: 1 at zero, 0 from 4.685 sigma on."""
-    z = np.clip(np.abs(residuals) / (TUKEY * sigma), 0, 1)
-    weights: Array = (1 - z * z) ** 2
+    z = np.minimum(np.abs(residuals) / (TUKEY * sigma), 1.0)
+    weights: Array = np.square(1 - z * z)
     return weights
 
 
@@ -40,3 +40,19 @@ def correlation_inflation(residuals: Array, used: Mask, longest: int = 40) -> fl
             break
         total += 2 * rho
     return total
+
+
+def beside_runs(outliers: Mask, run: int = 3, margin: int = 3) -> Mask:
+    """What lies within `margin` of `run` or more outliers in a row, along a closed outline.
+
+    Where something hides the outline, the edges next to its border are still there but pulled.
+    """
+    in_run = outliers.copy()
+    for shift in range(1, run):
+        in_run &= np.roll(outliers, shift)
+    near = in_run.copy()
+    for shift in range(1, margin + run):
+        near |= np.roll(in_run, -shift)
+    for shift in range(1, margin + 1):
+        near |= np.roll(in_run, shift)
+    return near

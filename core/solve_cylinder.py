@@ -35,7 +35,8 @@ PARAMETERS = ("x", "y", "radius", "height")
 # of all starts, those with the smallest residuals are descended from
 DESCENTS = 12
 # steps after which a descent shows which valley it is in
-ROUGH_STEPS = 6
+ROUGH_STEPS = 8
+LAST_DESCENTS = 4
 # two fits whose chi squared differs by less than this are within the noise of each other
 WITHIN_NOISE = 4.0
 # fits that agree to this share of their sizes are one and the same
@@ -114,15 +115,24 @@ def _all_fits(
     """The different fits from the starts that promise most, best first."""
     costs = [(float(np.sum(picks.equations(start).residuals ** 2)), start) for start in starts]
     seen = sorted((c for c in costs if np.isfinite(c[0])), key=lambda c: c[0])
-    fits: list[PickFit] = []
-    for _, start in seen[:DESCENTS]:
-        rough = fit_picks(start, free, picks.equations, sigma, steps=ROUGH_STEPS)
-        if rough is None or any(_same(rough, fit) for fit in fits):
-            continue
-        fit = fit_picks(rough.parameters, free, picks.equations, sigma)
-        if fit is not None and not any(_same(fit, other) for other in fits):
-            fits.append(fit)
-    return sorted(fits, key=lambda f: f.chi_squared)
+    descended = (
+        fit_picks(start, free, picks.equations, sigma, steps=ROUGH_STEPS)
+        for _, start in seen[:DESCENTS]
+    )
+    rough = _different([fit for fit in descended if fit is not None])
+    ends = (
+        fit_picks(fit.parameters, free, picks.equations, sigma) for fit in rough[:LAST_DESCENTS]
+    )
+    return _different([fit for fit in ends if fit is not None])
+
+
+def _different(fits: list[PickFit]) -> list[PickFit]:
+    """The fits, best first, without those that end where a better one does."""
+    kept: list[PickFit] = []
+    for fit in sorted(fits, key=lambda f: f.chi_squared):
+        if not any(_same(fit, other) for other in kept):
+            kept.append(fit)
+    return kept
 
 
 def _choose(name: str, fits: list[PickFit], picks: CylinderPicks) -> tuple[PickFit, list[PickFit]]:
