@@ -1,1 +1,41 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""The face in Blender's viewport: properties, operators, panels, menus and the overlay."""
+
+
+def register():
+    """Put all of it in place. OpenCV and the graphics module wait until they are needed."""
+    import bpy
+
+    from . import menus, overlay, properties
+
+    properties.register()
+    for cls in _classes():
+        bpy.utils.register_class(cls)
+    menus.register()
+    overlay.register()
+
+
+def unregister():
+    """Take it away, in reverse."""
+    import bpy
+
+    from . import menus, overlay, properties
+
+    overlay.unregister()
+    menus.unregister()
+    for cls in reversed(_classes()):
+        bpy.utils.unregister_class(cls)
+    properties.unregister()
+
+
+def _classes():
+    from . import lists, operators, panel_camera, panel_model, panel_picture, panel_use
+
+    return (
+        *operators.classes(),
+        *lists.CLASSES,
+        panel_picture.PicturePanel,
+        panel_camera.CameraPanel,
+        panel_model.ModelPanel,
+        panel_use.UsePanel,
+    )

@@ -96,7 +96,7 @@ class CylinderPicks:
         origin, rays = self.camera_from_plane.inverse().translation, self._side_rays
         away = origin[:2] - [x, y]
         distance = float(np.hypot(*away))
-        half = np.arccos(radius / distance) if distance > radius else np.nan
+        half = np.arccos(radius / distance) if distance > abs(radius) else np.nan
         flat = rays[:, :2]
         side = np.where(away[0] * flat[:, 1] - away[1] * flat[:, 0] > 0, 1.0, -1.0)
         angles = np.arctan2(away[1], away[0]) + side * half

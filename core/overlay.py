@@ -31,7 +31,7 @@ HALO: Color = (20, 16, 14)
 SHIFT = 6
 # pixels of a picture's diagonal to one pixel of line width, and to one of a capital letter
 DIAGONAL_PER_LINE = 800.0
-DIAGONAL_PER_CAPITAL = 110.0
+DIAGONAL_PER_CAPITAL = 145.0
 HALO_OPACITY, HIDDEN_OPACITY = 0.55, 0.7
 SMALLEST_CAPITAL = 7.0
 
@@ -71,9 +71,9 @@ def draw_overlay(
         picture, [(line, HALO) for line, _ in seen], width + 2 * max(1, width // 2), HALO_OPACITY
     )
     _blend(picture, seen, width, 1.0)
-    _draw_labels(
-        picture, objects, frames, colors, max(SMALLEST_CAPITAL, diagonal / DIAGONAL_PER_CAPITAL)
-    )
+    named = list(zip(objects, frames, colors, strict=True))
+    capital = max(SMALLEST_CAPITAL, diagonal / DIAGONAL_PER_CAPITAL)
+    _draw_labels(picture, named, [ring for ring, _ in rings], capital)
     return picture
 
 
@@ -118,15 +118,16 @@ def _blend(
 
 def _draw_labels(
     picture: Picture,
-    objects: Sequence[Primitive],
-    frames: Sequence[Sequence[Polyline]],
-    colors: Sequence[Color],
+    named: Sequence[tuple[Primitive, Sequence[Polyline], Color]],
+    rings: Sequence[Polyline],
     capital: float,
 ) -> None:
+    """A label beside every object that is in the picture, off the others and off the balls."""
     height, width = picture.shape[:2]
-    bounds = [_bounds(frame, width, height) for frame in frames]
-    taken = [box for box in bounds if box is not None]
-    for thing, box, color in zip(objects, bounds, colors, strict=True):
+    bounds = [_bounds(frame, width, height) for _, frame, _ in named]
+    balls = [_bounds([ring], width, height) for ring in rings]
+    taken = [box for box in (*bounds, *balls) if box is not None]
+    for (thing, _, color), box in zip(named, bounds, strict=True):
         if box is None:
             continue
         label = Label((_plain(thing.name), caption(thing)), color, capital)

@@ -26,8 +26,8 @@ class SightingReport:
 
     `rms_pixels`: what its outline is left with after the joint fit; `off_pixels` and
     `off_millimetres`: how far, across the line of sight, the ball found alone is from where the
-    pose puts it. All three are NaN for a ball that was not found. `reason` says why it is doubted or
-    rejected.
+    pose puts it. All three are NaN for a ball that was not found. `reason` says why it is doubted
+    or rejected.
     """
 
     picture: str

@@ -7,11 +7,14 @@ The operator picks three or four base corners in order round the base, and the c
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from .arrays import Array
 from .camera import Camera
 from .errors import PickError
+from .intrinsics import Intrinsics
 from .pick_fit import (
     Modelled,
     PickEquations,
@@ -55,20 +58,14 @@ def solve_box(
     start = _start(camera, sketch, plane, corners, top)
     free = np.array([name not in sketch.known for name in PARAMETERS])
 
-    pixels = np.concatenate([base.pixels, top.pixels])
-    signs = (ROUND * [1.0, turn])[[*base.places, *top.places]]
-    raised = np.repeat([0.0, 1.0], [len(base), len(top)])
-    camera_from_plane = camera.pose @ plane.world_from_plane
-
-    def equations(parameters: Array) -> PickEquations:
-        points, by_parameters = _corner_points(parameters, signs, raised)
-        points_camera = camera_from_plane.apply(points)
-        image, by_point = camera.intrinsics.project_with_jacobian(points_camera)
-        moved = by_point @ camera_from_plane.rotation @ by_parameters
-        twisted = by_point @ point_jacobian(points_camera)
-        return PickEquations((image - pixels).ravel(), moved.reshape(-1, 6), twisted.reshape(-1, 6))
-
-    fit = fit_picks(start, free, equations, pick_sigma_pixels)
+    picks = _CornerPicks(
+        camera.intrinsics,
+        camera.pose @ plane.world_from_plane,
+        np.concatenate([base.pixels, top.pixels]),
+        (ROUND * [1.0, turn])[[*base.places, *top.places]],
+        np.repeat([0.0, 1.0], [len(base), len(top)]),
+    )
+    fit = fit_picks(start, free, picks.equations, pick_sigma_pixels)
     if fit is None:
         raise PickError(f"{sketch.name}: its corners as picked can't all be seen by this lens")
     _refuse_negative(sketch.name, fit.parameters)
@@ -80,6 +77,28 @@ def solve_box(
         fit, camera, box, labels, distances
     )
     return Modelled(box, distances, rms(distances), warnings)
+
+
+@dataclass(frozen=True, eq=False)
+class _CornerPicks:
+    """Pixels (N, 2) of corners on sides `signs` (N, 2) of x and y, `raised` (N,) 0 or 1."""
+
+    intrinsics: Intrinsics
+    camera_from_plane: Pose
+    pixels: Array
+    signs: Array
+    raised: Array
+
+    def equations(self, parameters: Array) -> PickEquations:
+        """Offsets of the corners of any box, u and v in turn, with their derivatives."""
+        points, by_parameters = _corner_points(parameters, self.signs, self.raised)
+        points_camera = self.camera_from_plane.apply(points)
+        image, by_point = self.intrinsics.project_with_jacobian(points_camera)
+        moved = by_point @ self.camera_from_plane.rotation @ by_parameters
+        twisted = by_point @ point_jacobian(points_camera)
+        return PickEquations(
+            (image - self.pixels).ravel(), moved.reshape(-1, 6), twisted.reshape(-1, 6)
+        )
 
 
 def _corner_points(parameters: Array, signs: Array, raised: Array) -> tuple[Array, Array]:

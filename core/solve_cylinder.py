@@ -8,6 +8,7 @@ the base and the trunk of figure 3). All are fitted at once, by their distances 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import islice
 
 import numpy as np
 
@@ -120,8 +121,10 @@ def _all_fits(
         for _, start in seen[:DESCENTS]
     )
     rough = _different([fit for fit in descended if fit is not None])
+    # a circle of negative radius is the same circle: the last descent starts from its mirror image
+    upright = (fit.parameters * [1, 1, np.sign(fit.parameters[2]), 1] for fit in rough)
     ends = (
-        fit_picks(fit.parameters, free, picks.equations, sigma) for fit in rough[:LAST_DESCENTS]
+        fit_picks(start, free, picks.equations, sigma) for start in islice(upright, LAST_DESCENTS)
     )
     return _different([fit for fit in ends if fit is not None])
 

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A cell into a Blender scene of its own: camera, picture behind the view, objects, document."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ..core.camera import Camera
+from ..core.cell import Cell
+from ..core.errors import InvalidValue
+from ..core.pose import Pose
+from .document import bare_cell, show_objects, write_scene
+
+# how far a click may be off, in pixels, before the Blender camera counts as moved
+SAME_PIXELS = 0.05
+# the picture's corners and middle, a metre and more ahead, tell whether two cameras see the same
+PROBES_CAMERA = np.array([[x, y, z] for x in (-0.4, 0, 0.4) for y in (-0.3, 0.3) for z in (1, 3)])
+# where a camera is put that has no pose yet: like someone standing at the cell's corner
+FIRST_DIRECTION = np.array([1.0, -1.3, 0.9])
+LEAST_DISTANCE = 1.5
+
+
+def open_scene(context: Any, cell: Cell, title: str) -> Any:
+    """Make a scene of `cell` and show it in the window; the user's own scenes are left alone.
+
+    The picture is read first, so that a refusal (PictureError, InvalidValue) changes nothing.
+    Returns the scene.
+    """
+    from ..core.pictures import read_picture
+
+    name = shown_first(cell)
+    picture = None if name is None else read_picture(cell.path_of(name), cell.camera.intrinsics)
+    with _new_scene(title) as scene:
+        stored = scene.monocell_cell
+        stored.collection = bpy.data.collections.new("Cell objects")
+        scene.collection.children.link(stored.collection)
+        stored.camera = _new_camera(scene)
+        write_scene(scene, cell)
+        put_camera(scene)
+        if picture is not None:
+            show_picture(scene, name, picture)
+        show_objects(scene, cell)
+    context.window.scene = scene
+    return scene
+
+
+def shown_first(cell: Cell) -> str | None:
+    """The picture to show behind the view: the cell's own, or that of its first sighting."""
+    if cell.picture is not None:
+        return cell.picture
+    return cell.sightings[0].picture if cell.sightings else None
+
+
+def show_picture(scene: Any, name: str, picture: Any) -> None:
+    """Show a picture (H, W, 3), undistorted, behind the camera view. Raises PictureError."""
+    from ..scene.background import show_background
+
+    stored = scene.monocell_cell
+    show_background(stored.camera, picture, bare_cell(scene).camera.intrinsics)
+    stored.shown_picture = name
+
+
+def put_camera(scene: Any) -> None:
+    """Give Blender's camera the lens and place of the document's; it is locked against slips."""
+    from ..scene.blender_camera import place_camera
+
+    ob, cell = scene.monocell_cell.camera, bare_cell(scene)
+    place_camera(ob, scene.render, cell.camera.intrinsics, _pose_or_guess(cell))
+    ob.lock_location = ob.lock_rotation = ob.lock_scale = (True, True, True)
+    scene.camera = ob
+
+
+def camera_stands(scene: Any) -> bool:
+    """Whether Blender's camera still is the document's, so that models meet the picture."""
+    from ..scene.blender_camera import read_camera
+
+    ob, cell = scene.monocell_cell.camera, bare_cell(scene)
+    if ob is None or scene.camera != ob:
+        return False
+    try:
+        now = read_camera(ob, scene.render)
+    except InvalidValue:
+        return False
+    wanted = Camera(cell.camera.intrinsics.undistorted(), _pose_or_guess(cell))
+    seen = Camera(now.intrinsics.undistorted(), now.camera_from_world)
+    points = wanted.pose.inverse().apply(PROBES_CAMERA)
+    same = np.abs(wanted.project(points) - seen.project(points)) < SAME_PIXELS
+    size = (cell.camera.intrinsics.width, cell.camera.intrinsics.height)
+    return bool(same.all()) and size == (now.intrinsics.width, now.intrinsics.height)
+
+
+def look_through(context: Any) -> None:
+    """Turn the window's largest 3D viewport to the camera, the picture filling its free part."""
+    area = viewport(context)
+    if area is None:
+        return
+    from .picture_frame import fit_picture, free_part
+
+    space = area.spaces.active
+    region = next(r for r in area.regions if r.type == "WINDOW")
+    space.region_3d.view_perspective = "CAMERA"
+    space.use_local_camera = False
+    fit_picture(context.scene, region, space, free_part(area, region))
+    # the picture shows through the models; grid and cursor would only lie on top of it
+    space.shading.show_xray, space.shading.xray_alpha = True, 0.35
+    space.overlay.show_floor = space.overlay.show_cursor = False
+    space.overlay.show_axis_x = space.overlay.show_axis_y = False
+    area.tag_redraw()
+
+
+def viewport(context: Any) -> Any | None:
+    """The 3D viewport that the user is in, or else the largest of the window."""
+    if context.area is not None and context.area.type == "VIEW_3D":
+        return context.area
+    screen = context.window.screen if context.window else None
+    areas = [area for area in screen.areas if area.type == "VIEW_3D"] if screen else []
+    return max(areas, key=lambda area: area.width * area.height, default=None)
+
+
+def looks_through(scene: Any, space: Any) -> bool:
+    """Whether a 3D viewport shows the picture: it looks through the cell's own camera."""
+    camera = space.camera if space.use_local_camera else scene.camera
+    return (
+        space.region_3d.view_perspective == "CAMERA"
+        and camera is not None
+        and camera == scene.monocell_cell.camera
+        and not space.region_quadviews
+    )
+
+
+def _pose_or_guess(cell: Cell) -> Pose:
+    """The camera's pose, or for a camera without one a place that overlooks its sightings."""
+    if cell.camera.camera_from_world is not None:
+        return cell.camera.camera_from_world
+    centres = np.array([s.center_world for s in cell.sightings] or [[0.0, 0.0, 0.0]])
+    middle = centres.mean(axis=0)
+    reach = float(np.linalg.norm(centres - middle, axis=1).max())
+    direction = FIRST_DIRECTION / np.linalg.norm(FIRST_DIRECTION)
+    return Pose.looking_at(middle + max(LEAST_DISTANCE, 3 * reach) * direction, middle, [0, 0, 1])
+
+
+def _new_camera(scene: Any) -> Any:
+    ob = bpy.data.objects.new("Cell camera", bpy.data.cameras.new("Cell camera"))
+    # a cell may begin a hand's breadth from the lens
+    ob.data.clip_start, ob.data.clip_end = 0.01, 100.0
+    ob.data.passepartout_alpha = 0.85
+    scene.collection.objects.link(ob)
+    return ob
+
+
+@contextmanager
+def _new_scene(title: str) -> Iterator[Any]:
+    """A new scene, taken away again with all that is in it when building it is refused."""
+    scene = bpy.data.scenes.new(title)
+    try:
+        yield scene
+    except Exception:
+        built = list(scene.collection.all_objects)
+        bpy.data.batch_remove([*built, *(ob.data for ob in built)])
+        bpy.data.batch_remove(list(scene.collection.children))
+        bpy.data.scenes.remove(scene)
+        raise
+
+
+def title_of(path: str | Path) -> str:
+    """What a scene is called after its file: `bench.cell.json` gives `bench`."""
+    return Path(path).name.removesuffix(".json").removesuffix(".cell")

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scene is the document: a Cell out of a scene, and a Cell or a calibration into it.
+
+The scene's text holds camera, picture, sightings, references and what is picked but not solved;
+the objects are Blender's objects. Each thing is written in one place, so they can't disagree.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from ..core.cell import Cell
+from ..core.cell_file import cell_from_document, document_from_cell, dumped
+from ..core.reference import ReferencePlane
+from .report import Report, dump_report, parse_report
+
+FLOOR = ReferencePlane("floor", [0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
+
+
+def has_cell(scene: Any) -> bool:
+    """Whether a cell was opened in this scene."""
+    return bool(scene.monocell_cell.text)
+
+
+def read_scene(scene: Any) -> Cell:
+    """The whole cell: the scene's document with the objects as they stand in Blender now.
+
+    Raises InvalidValue when an object was edited out of its kind, or two share a name.
+    """
+    from ..scene.objects import is_modelled, read_object
+
+    objects = tuple(read_object(ob) for ob in scene.objects if is_modelled(ob))
+    return replace(bare_cell(scene), objects=objects)
+
+
+def bare_cell(scene: Any) -> Cell:
+    """The cell without its objects; cheap enough for panels, which draw often."""
+    stored = scene.monocell_cell
+    return _parsed(stored.text, stored.folder)
+
+
+def stored_report(scene: Any) -> Report | None:
+    """The last calibration, None before one."""
+    return _parsed_report(scene.monocell_cell.report)
+
+
+def write_scene(scene: Any, cell: Cell, report: Report | None = None) -> None:
+    """Let the scene's document be that of `cell`; its objects are left to `show_objects`.
+
+    A cell without a plane to stand things on gets the floor, z = 0. `report` is the calibration
+    that the cell's camera came from, None for none.
+    """
+    if not any(isinstance(reference, ReferencePlane) for reference in cell.references):
+        cell = replace(cell, references=(*cell.references, FLOOR))
+    folder = cell.folder.resolve()
+    stored = scene.monocell_cell
+    stored.folder = str(folder)
+    stored.text = dumped(document_from_cell(replace(cell, objects=()), folder))
+    stored.report = "" if report is None else dump_report(report)
+    _fill_sightings(stored, cell, report)
+    _fill_references(stored, cell)
+
+
+def show_objects(scene: Any, cell: Cell) -> None:
+    """Build every object of `cell`, in place where it is there already."""
+    from ..scene.objects import build_object
+
+    for thing in cell.objects:
+        build_object(thing, scene.monocell_cell.collection)
+
+
+def _fill_sightings(stored: Any, cell: Cell, report: Report | None) -> None:
+    stored.sightings.clear()
+    for i, sighting in enumerate(cell.sightings):
+        row = stored.sightings.add()
+        row.picture = sighting.picture
+        row.place = "  ".join(f"{x:.3f}" for x in sighting.center_world)
+        if report is not None:
+            seen = report.sightings[i]
+            row.status, row.reason = seen.status, seen.reason
+            row.residual = "" if seen.rms_pixels is None else f"{seen.rms_pixels:.2f} px"
+
+
+def _fill_references(stored: Any, cell: Cell) -> None:
+    stored.references.clear()
+    for reference in cell.references:
+        row = stored.references.add()
+        row.name = reference.name
+        plane = isinstance(reference, ReferencePlane)
+        row.kind = "plane" if plane else "line"
+        way = reference.normal if plane else reference.direction
+        row.place = _where(reference.point) + (" ⟂ " if plane else " ∥ ") + _where(way)
+    planes = [i for i, r in enumerate(cell.references) if isinstance(r, ReferencePlane)]
+    if stored.reference_index not in planes:
+        stored.reference_index = planes[0]
+
+
+def _where(vector: Any) -> str:
+    return "(" + ", ".join(f"{x:.3g}" for x in vector) + ")"
+
+
+# the panels and the overlay ask with every redraw, and a text is the same cell every time
+@lru_cache(maxsize=4)
+def _parsed(text: str, folder: str) -> Cell:
+    return cell_from_document(json.loads(text), Path(folder))
+
+
+@lru_cache(maxsize=4)
+def _parsed_report(text: str) -> Report | None:
+    return parse_report(text)

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lines and words over a region, in region pixels: the only file that talks to the graphics card.
+
+Blender draws in float32 with the origin at the region's lower left corner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..core.arrays import Array
+
+Color = tuple[float, float, float, float]
+HALO: Color = (0.05, 0.05, 0.06, 0.6)
+# Okabe and Ito's colours, which colour-blind eyes tell apart
+SKY: Color = (0.34, 0.71, 0.91, 1.0)
+YELLOW: Color = (0.94, 0.89, 0.26, 1.0)
+GREEN: Color = (0.16, 0.78, 0.45, 1.0)
+ORANGE: Color = (0.98, 0.66, 0.1, 1.0)
+RED: Color = (0.94, 0.33, 0.2, 1.0)
+WHITE: Color = (1.0, 1.0, 1.0, 1.0)
+TEXT_SIZE = 13.0
+
+
+class LineBatch:
+    """Polylines (N, 2) of one colour and width, kept on the graphics card between redraws."""
+
+    def __init__(self, lines: Iterable[Array], color: Color, width: float) -> None:
+        import gpu
+        from gpu_extras.batch import batch_for_shader
+
+        self._shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
+        self._color, self._width = color, width
+        parts = [np.stack([line[:-1], line[1:]], axis=1).reshape(-1, 2) for line in lines]
+        ends = np.concatenate(parts) if parts else np.zeros((0, 2))
+        flat = np.column_stack([ends, np.zeros(len(ends))]).astype(np.float32)
+        self._batch = batch_for_shader(self._shader, "LINES", {"pos": flat}) if len(ends) else None
+
+    def draw(self, scale: float) -> None:
+        """Draw under the current matrices; `scale` is Blender's interface scale."""
+        import gpu
+
+        if self._batch is None:
+            return
+        gpu.state.blend_set("ALPHA")
+        self._shader.bind()
+        self._shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+        self._shader.uniform_float("lineWidth", self._width * scale)
+        self._shader.uniform_float("color", self._color)
+        self._batch.draw(self._shader)
+        gpu.state.blend_set("NONE")
+
+
+def draw_lines(lines: Sequence[Array], color: Color, width: float, scale: float) -> None:
+    """Draw polylines (N, 2) once, with a dark halo that keeps them readable on any picture."""
+    LineBatch(lines, HALO, width + 2.0).draw(scale)
+    LineBatch(lines, color, width).draw(scale)
+
+
+def draw_crosses(points: Array, color: Color, scale: float) -> None:
+    """Draw a small upright cross at each of the points (N, 2), its middle left open."""
+    inner, outer = 2.5 * scale, 8.0 * scale
+    arms = [np.array(way) for way in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))]
+    lines = [np.array([p + inner * arm, p + outer * arm]) for p in points for arm in arms]
+    draw_lines(lines, color, 1.5, scale)
+
+
+def draw_words(
+    rows: Sequence[tuple[str, Color]], x: float, y: float, size: tuple[int, int], scale: float
+) -> None:
+    """Write rows of text on a dark plate near (x, y), moved so that it stays in the region."""
+    import blf
+
+    rows = [row for row in rows if row[0]]
+    if not rows:
+        return
+    blf.size(0, TEXT_SIZE * scale)
+    line, pad = 1.45 * TEXT_SIZE * scale, 6.0 * scale
+    width = max(blf.dimensions(0, text)[0] for text, _ in rows) + 2 * pad
+    height = line * len(rows) + pad
+    left = min(x + 18 * scale, size[0] - width - pad)
+    top = y - 18 * scale if y - 18 * scale - height > 0 else y + 18 * scale + height
+    _plate(left, top - height, left + width, top)
+    for i, (text, color) in enumerate(rows):
+        blf.position(0, left + pad, top - line * (i + 1) + 0.22 * line, 0)
+        blf.color(0, *color)
+        blf.draw(0, text)
+
+
+def _plate(left: float, bottom: float, right: float, top: float) -> None:
+    import gpu
+    from gpu_extras.batch import batch_for_shader
+
+    shader: Any = gpu.shader.from_builtin("UNIFORM_COLOR")
+    corners = [(left, bottom, 0), (right, bottom, 0), (left, top, 0), (right, top, 0)]
+    batch = batch_for_shader(shader, "TRI_STRIP", {"pos": corners})
+    gpu.state.blend_set("ALPHA")
+    shader.bind()
+    shader.uniform_float("color", (0.06, 0.06, 0.07, 0.82))
+    batch.draw(shader)
+    gpu.state.blend_set("NONE")

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How the lists of the sidebar show sightings, references and objects."""
+
+import bpy
+
+STATUS_ICONS = {
+    "": "BLANK1",
+    "used": "CHECKMARK",
+    "doubtful": "QUESTION",
+    "rejected": "CANCEL",
+}
+
+
+class SightingList(bpy.types.UIList):
+    """Ball sightings: picture, place of the ball, and what calibration made of it."""
+
+    bl_idname = "MONOCELL_UL_sightings"
+
+    def draw_item(self, context, layout, data, item, icon, active_data, active_property, index):
+        """One row."""
+        row = layout.row(align=True)
+        row.label(text=item.picture, icon=STATUS_ICONS[item.status])
+        row.label(text=item.place)
+        right = row.row()
+        right.alignment = "RIGHT"
+        right.label(text=item.residual or item.status)
+
+
+class ReferenceList(bpy.types.UIList):
+    """References: name and where they lie."""
+
+    bl_idname = "MONOCELL_UL_references"
+
+    def draw_item(self, context, layout, data, item, icon, active_data, active_property, index):
+        """One row."""
+        row = layout.row(align=True)
+        row.label(text=item.name, icon="MESH_PLANE" if item.kind == "plane" else "IPO_LINEAR")
+        row.label(text=item.place)
+
+
+class ObjectList(bpy.types.UIList):
+    """The cell's objects."""
+
+    bl_idname = "MONOCELL_UL_objects"
+
+    def draw_item(self, context, layout, data, item, icon, active_data, active_property, index):
+        """One row."""
+        entry = item.get("monocell")
+        kind = entry["kind"] if entry else ""
+        icons = {"box": "MESH_CUBE", "cylinder": "MESH_CYLINDER"}
+        layout.prop(item, "name", text="", emboss=False, icon=icons.get(kind, "ERROR"))
+
+
+CLASSES = (SightingList, ReferenceList, ObjectList)

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Calibrate the scene's camera from its ball sightings."""
+
+from typing import ClassVar
+
+import bpy
+
+from ..cell_scene import put_camera
+from ..document import bare_cell, write_scene
+from ..polls import NeedsCell
+from ..refusals import refuses
+from ..report import report_of
+
+FEWEST_SIGHTINGS = 3
+
+
+class Calibrate(NeedsCell, bpy.types.Operator):
+    """Find the ball in every sighting's picture and compute where the camera stands"""
+
+    bl_idname = "monocell.calibrate"
+    bl_label = "Calibrate"
+    bl_options: ClassVar = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        """Blender's question whether the operator can run now."""
+        if not super().poll(context):
+            return False
+        count = len(bare_cell(context.scene).sightings)
+        if count >= FEWEST_SIGHTINGS:
+            return True
+        cls.poll_message_set(
+            f"The document has {count} ball sightings; a pose needs {FEWEST_SIGHTINGS} or more"
+        )
+        return False
+
+    @refuses
+    def execute(self, context):
+        """Calibrate, then let document and Blender's camera take the pose."""
+        from ...core.calibration import calibrate_cell
+
+        cell, calibration = calibrate_cell(bare_cell(context.scene))
+        write_scene(context.scene, cell, report_of(calibration))
+        put_camera(context.scene)
+        level = "INFO" if calibration.verdict == "good" else "WARNING"
+        self.report(
+            {level}, f"Calibration {calibration.verdict}: {calibration.rms_pixels:.2f} px rms"
+        )
+        for warning in calibration.warnings:
+            self.report({"WARNING"}, warning)
+        return {"FINISHED"}

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Save the scene's cell as a document."""
+
+from typing import ClassVar
+
+import bpy
+from bpy.props import StringProperty
+from bpy_extras.io_utils import ExportHelper
+
+from ..document import read_scene
+from ..polls import NeedsCell
+from ..refusals import refuses
+
+
+class SaveCell(NeedsCell, bpy.types.Operator, ExportHelper):
+    """Save camera, sightings, references and objects as one cell document"""
+
+    bl_idname = "monocell.save_cell"
+    bl_label = "Save Cell Document"
+    bl_options: ClassVar = {"REGISTER"}
+
+    filename_ext = ".json"
+    filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
+
+    def invoke(self, context, event):
+        """Offer the name that it was opened from."""
+        stored = context.scene.monocell_cell
+        self.filepath = stored.path or bpy.path.clean_name(context.scene.name) + ".cell.json"
+        return super().invoke(context, event)
+
+    @refuses
+    def execute(self, context):
+        """Write it whole or not at all."""
+        from ...core.cell_file import write_cell
+
+        path = bpy.path.abspath(self.filepath)
+        cell = read_scene(context.scene)
+        write_cell(cell, path)
+        self.report({"INFO"}, f"{path}: {len(cell.objects)} objects saved")
+        return {"FINISHED"}

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Show another of the cell's pictures behind the camera view."""
+
+from typing import ClassVar
+
+import bpy
+from bpy.props import StringProperty
+
+from ..cell_scene import show_picture
+from ..document import bare_cell
+from ..polls import NeedsCell
+from ..refusals import refuses
+
+
+class ShowPicture(NeedsCell, bpy.types.Operator):
+    """Show this picture behind the camera view"""
+
+    bl_idname = "monocell.show_picture"
+    bl_label = "Show Picture"
+    bl_options: ClassVar = {"REGISTER", "UNDO"}
+
+    picture: StringProperty(name="Picture", description="Its name as the document has it")
+
+    @refuses
+    def execute(self, context):
+        """Read the picture, then undistort and show it."""
+        from ...core.pictures import read_picture
+
+        cell = bare_cell(context.scene)
+        pixels = read_picture(cell.path_of(self.picture), cell.camera.intrinsics)
+        show_picture(context.scene, self.picture, pixels)
+        return {"FINISHED"}

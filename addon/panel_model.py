@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sidebar's third step: what things stand on, and the things."""
+
+import bpy
+
+from .document import bare_cell, has_cell
+from .lists import ObjectList, ReferenceList
+from .operators.add_box import AddBox
+from .operators.add_cylinder import AddCylinder
+from .operators.solve_again import SolveAgain
+from .panel_parts import DONE, NEXT, WAITING, CellPanel, numbers, paragraph, standing
+
+
+class ModelPanel(CellPanel, bpy.types.Panel):
+    """Adds objects, and shows their sizes with 1 sigma."""
+
+    bl_idname = "MONOCELL_PT_model"
+    bl_label = "Model"
+
+    def draw_header(self, context):
+        """Blender's call."""
+        standing(self.layout, _standing(context.scene))
+
+    def draw(self, context):
+        """Blender's call."""
+        layout, scene = self.layout, context.scene
+        if not has_cell(scene):
+            paragraph(layout, context, "Comes after the camera.")
+            return
+        cell, stored = bare_cell(scene), scene.monocell_cell
+        if cell.camera.camera_from_world is None:
+            paragraph(layout, context, "Calibrate first: a picture has no scale without it.")
+            return
+        layout.label(text="Stands on")
+        layout.template_list(
+            ReferenceList.bl_idname, "", stored, "references", stored, "reference_index", rows=2
+        )
+        row = layout.row(align=True)
+        row.scale_y = 1.3
+        row.operator(AddBox.bl_idname, icon="MESH_CUBE")
+        row.operator(AddCylinder.bl_idname, icon="MESH_CYLINDER")
+        layout.prop(scene.monocell_inputs, "pick_sigma_pixels", text="Pick noise (px)")
+        self._draw_objects(layout, context, cell)
+
+    def _draw_objects(self, layout, context, cell):
+        stored = context.scene.monocell_cell
+        if cell.sketches:
+            waiting = f"{len(cell.sketches)} picked in the document, not solved yet."
+            paragraph(layout, context, waiting, "INFO")
+        if stored.collection is None or not len(stored.collection.objects):
+            if not cell.sketches:
+                paragraph(layout, context, "No objects yet: add one, then click on the picture.")
+        else:
+            layout.template_list(
+                ObjectList.bl_idname,
+                "",
+                stored.collection,
+                "objects",
+                stored,
+                "object_index",
+                rows=3,
+            )
+            _draw_sizes(layout, context)
+        layout.operator(SolveAgain.bl_idname, icon="FILE_REFRESH")
+
+
+def _standing(scene):
+    if not has_cell(scene) or bare_cell(scene).camera.camera_from_world is None:
+        return WAITING
+    collection = scene.monocell_cell.collection
+    return DONE if collection is not None and len(collection.objects) else NEXT
+
+
+def _draw_sizes(layout, context):
+    """Sizes and place of the active object, with 1 sigma where it is known."""
+    from ..core.errors import MonocellError
+    from ..scene.objects import is_modelled, read_object
+
+    ob = context.view_layer.objects.active
+    if ob is None or not is_modelled(ob):
+        return
+    try:
+        thing = read_object(ob)
+    except MonocellError as error:
+        paragraph(layout, context, str(error), "ERROR")
+        return
+    numbers(layout, _rows(thing))
+
+
+def _rows(thing):
+    sigmas, place = thing.size_sigma(), thing.position_sigma()
+    for i, (name, size) in enumerate(zip(thing.size_names, thing.sizes, strict=True)):
+        error = "" if sigmas is None or sigmas[i] == 0 else f" ± {1e3 * sigmas[i]:.1f}"
+        yield name.replace("size_", "Size ").capitalize(), f"{1e3 * size:.1f}{error} mm"
+    for axis, i in zip("xyz", range(3), strict=True):
+        error = "" if place is None else f" ± {1e3 * place[i]:.1f}"
+        yield f"Centre {axis}", f"{1e3 * thing.world_from_object.translation[i]:.1f}{error} mm"
+    yield "Stands on", thing.on or "nothing named"

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The demo's steps, each a room of the house at work: pictures, calibration, modelling, motion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from ...core.calibration import Calibration, calibrate_cell
+from ...core.camera import Camera
+from ...core.cell import Cell
+from ...core.cell_file import read_cell, write_cell
+from ...core.modelling import model_cell
+from ...core.overlay import BallOutline, draw_overlay
+from ...core.pick_fit import Modelled
+from ...core.pictures import read_picture
+from ...core.sphere import outline_pixels
+from ..pictures import write_picture
+from ..told import progress
+from .hand import pick_objects
+from .photographs import PICTURE, Held, photograph_cell, photograph_sightings
+from .plan_of_cell import (
+    BALL_IN_FLANGE,
+    BALL_RADIUS,
+    FLOOR,
+    STEM_RADIUS,
+    ball_positions,
+    true_camera,
+    true_objects,
+)
+
+TRUTH, CELL = "truth.cell.json", "cell.cell.json"
+PICK_SIGMA_PIXELS = 1.0
+COLORS = {"used": (90, 220, 90), "doubtful": (0, 190, 255), "rejected": (60, 60, 255)}
+
+
+def make_pictures(out: Path) -> Cell:
+    """Render the photographs and write the truth; returns the true cell."""
+    from ..robot.arm import Arm, HeldBall
+
+    camera, objects = true_camera(), true_objects()
+    ball = HeldBall(BALL_RADIUS, BALL_IN_FLANGE, STEM_RADIUS)
+    with Arm(ball=ball) as arm:
+        held: list[Held] = []
+        for position in ball_positions():
+            joints = arm.joints_reaching(position, point_flange=BALL_IN_FLANGE)
+            held.append((arm.parts(joints), arm.ball_center(joints), arm.world_from_flange(joints)))
+        sightings = photograph_sightings(camera, out, held)
+        photograph_cell(camera, objects, arm.parts(arm.rest), out / PICTURE)
+    truth = Cell(camera, PICTURE, sightings, (FLOOR,), objects, folder=out)
+    write_cell(truth, out / TRUTH)
+    return truth
+
+
+def hand_over(truth: Cell, seed: int) -> Path:
+    """Write what a real site would send: pictures, lens, robot positions, and a hand's picks.
+
+    The camera's pose and the objects stay behind: only the picks, off by a hand's error, follow.
+    """
+    picks = pick_objects(truth.camera, truth.objects, PICK_SIGMA_PIXELS, seed)
+    camera = Camera(truth.camera.intrinsics)
+    given = replace(truth, camera=camera, objects=(), sketches=picks)
+    write_cell(given, truth.folder / CELL)
+    return truth.folder / CELL
+
+
+def estimate(path: Path) -> tuple[Cell, Calibration, tuple[Modelled, ...]]:
+    """Calibrate and model what the document holds, and write it back."""
+    progress("calibrating from the pictures")
+    cell, calibration = calibrate_cell(read_cell(path))
+    progress("modelling from the picks")
+    solved, modelled = model_cell(cell, PICK_SIGMA_PIXELS)
+    write_cell(solved, path)
+    return solved, calibration, modelled
+
+
+def draw_overlays(cell: Cell, calibration: Calibration, out: Path) -> tuple[Path, Path]:
+    """The cell's picture with wire-frames, and one of the ball's pictures with all outlines."""
+    intrinsics = cell.camera.intrinsics
+    balls = []
+    for report in calibration.sightings:
+        centre = cell.camera.pose.apply(report.center_world)
+        pixels = outline_pixels(intrinsics, centre, BALL_RADIUS)
+        balls.append(BallOutline(pixels, COLORS[report.status]))
+    assert cell.picture is not None
+    picture = read_picture(cell.path_of(cell.picture), intrinsics)
+    overlay = out / "overlay.png"
+    write_picture(overlay, draw_overlay(picture, cell.camera, cell.objects, balls))
+    first = read_picture(cell.path_of(cell.sightings[0].picture), intrinsics)
+    sightings = out / "sightings.png"
+    write_picture(sightings, draw_overlay(first, cell.camera, (), balls))
+    return overlay, sightings

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`monocell render`: a true cell in, its pictures through Cycles and the truth beside them out."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ...core.cell import Cell
+from ...core.cell_file import read_cell, write_cell
+from ...core.errors import InvalidValue
+from ..blender import require_blender
+from ..told import progress
+
+BALL_COLOR = np.array([0.06, 0.42, 0.05])
+TRUTH = "truth.cell.json"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The verb's own arguments."""
+    parser.add_argument("cell", type=Path, help="cell document with camera pose and objects")
+    parser.add_argument("out", type=Path, help="folder for the pictures, made if it is not there")
+    parser.add_argument(
+        "--samples", type=int, default=8, help="light paths per pixel (default 8); more, less grain"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Render the cell's picture and each sighting's, and write the truth with their names."""
+    if args.samples < 1:
+        raise InvalidValue(f"--samples: must be 1 or more, got {args.samples}")
+    cell = read_cell(args.cell)
+    cell.camera.pose  # noqa: B018  a camera without pose is refused before anything is made
+    require_blender()
+    args.out.mkdir(parents=True, exist_ok=True)
+    truth = _named(cell, args.out)
+    _render_all(truth, args.samples)
+    write_cell(truth, args.out / TRUTH)
+    for name in dict.fromkeys([truth.picture or "", *(s.picture for s in truth.sightings)]):
+        print(args.out / name)
+    print(args.out / TRUTH)
+    return 0
+
+
+def _named(cell: Cell, out: Path) -> Cell:
+    """Pictures by their bare names in the new folder; a cell without a picture gets one."""
+    return replace(
+        cell,
+        picture=Path(cell.picture or "cell.png").with_suffix(".png").name,
+        sightings=tuple(
+            replace(s, picture=Path(s.picture).with_suffix(".png").name) for s in cell.sightings
+        ),
+        folder=out,
+    )
+
+
+def _render_all(truth: Cell, samples: int) -> None:
+    from ...scene.stage import Stage
+    from ...scene.work_cell import Ball, WorkCell
+
+    assert truth.picture is not None
+    progress(f"rendering {truth.picture}")
+    with Stage(WorkCell(truth.camera, truth.objects)) as stage:
+        stage.render(truth.folder / truth.picture, samples=samples)
+    with Stage(WorkCell(truth.camera)) as stage:
+        for sighting in truth.sightings:
+            progress(f"rendering {sighting.picture}")
+            stage.move((), Ball(sighting.center_world, sighting.radius, BALL_COLOR))
+            stage.render(truth.folder / sighting.picture, samples=samples)

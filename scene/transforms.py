@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Poses into Blender's matrices, and an object's place back as pose and scale."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from mathutils import Matrix
+
+from ..core.arrays import Array
+from ..core.errors import InvalidValue
+from ..core.pose import Pose
+
+# float32 matrices are orthogonal to about 1e-7; a shear that matters is far above this
+SHEAR_TOLERANCE = 1e-4
+
+
+def matrix_of(pose: Pose) -> Matrix:
+    """The pose as Blender's 4x4 matrix (float32)."""
+    return Matrix(pose.matrix().tolist())
+
+
+def stand(ob: Any, world_from_object: Pose) -> None:
+    """Place an object, its scale exactly 1 (Blender's own decomposition is 6e-8 off)."""
+    ob.matrix_world = matrix_of(world_from_object)
+    if ob.parent is None:
+        ob.scale = (1.0, 1.0, 1.0)
+
+
+def world_matrix(ob: Any) -> Array:
+    """Where an object stands now, (4, 4).
+
+    Without parent and constraints this is the matrix of its own location, rotation and scale, which
+    is up to date at once; `matrix_world` waits for the next evaluation of the scene.
+    """
+    free = ob.parent is None and not ob.constraints
+    return np.array(ob.matrix_basis if free else ob.matrix_world, dtype=float)
+
+
+def pose_and_scale(ob: Any) -> tuple[Pose, Array]:
+    """An object's pose and its scale (3,) along its own axes, always positive.
+
+    A mirrored object has its z axis turned round: monocell's shapes are their own mirror images.
+    Raises InvalidValue for a shear, or a scale of zero.
+    """
+    matrix = world_matrix(ob)
+    columns = matrix[:3, :3]
+    scale = np.linalg.norm(columns, axis=0)
+    if (scale < 1e-9).any():
+        raise InvalidValue(f"{ob.name}: a scale of zero leaves no shape; set its scale again")
+    axes = columns / scale
+    shear = float(np.abs(axes.T @ axes - np.eye(3)).max())
+    if shear > SHEAR_TOLERANCE:
+        raise InvalidValue(
+            f"{ob.name}: sheared by {shear:.2g} (a turned object under a scaled parent); "
+            "clear its parent or apply the parent's scale"
+        )
+    if np.linalg.det(axes) < 0:
+        axes[:, 2] *= -1
+    return Pose(axes, matrix[:3, 3]), scale

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The plain description of a synthetic robot cell: what stands where, and who looks at it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..core.arrays import Array, frozen, positive
+from ..core.camera import Camera
+from ..core.mesh_part import MeshPart
+from ..core.pose import Pose
+from ..core.primitives import Primitive
+
+
+@dataclass(frozen=True, eq=False)
+class Ball:
+    """The calibration ball: `center_world` (3,), `radius` in metres, `color` (3,) in linear light.
+
+    With `world_from_flange` a gripper reaches from the flange to the ball: its palm behind, one
+    finger on each side, which hide a part of the ball as they do in life.
+    """
+
+    center_world: Array
+    radius: float
+    color: Array
+    world_from_flange: Pose | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "center_world", frozen(self.center_world, (3,), "center_world"))
+        object.__setattr__(self, "radius", positive(self.radius, "radius"))
+        object.__setattr__(self, "color", frozen(self.color, (3,), "color"))
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """The table whose top is the plane z = 0: its `centre` (2,) and `size` (2,) in metres.
+
+    Its top is `height` above the floor of the room.
+    """
+
+    centre: Array = field(default_factory=lambda: np.array([0.35, 0.0]))
+    size: Array = field(default_factory=lambda: np.array([1.6, 1.5]))
+    height: float = 0.8
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "centre", frozen(self.centre, (2,), "table.centre"))
+        object.__setattr__(self, "size", frozen(self.size, (2,), "table.size"))
+        object.__setattr__(self, "height", positive(self.height, "table.height"))
+
+
+@dataclass(frozen=True, eq=False)
+class WorkCell:
+    """A robot on a table in a lab. World: metres, z up, the robot's base at the origin.
+
+    `parts` are the meshes of the arm in their poses. `light` scales the brightness of the room.
+    """
+
+    camera: Camera
+    objects: tuple[Primitive, ...] = ()
+    ball: Ball | None = None
+    parts: tuple[MeshPart, ...] = ()
+    table: Table = field(default_factory=Table)
+    light: float = 1.0
