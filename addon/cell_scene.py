@@ -11,6 +11,7 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ..core.arrays import Array
 from ..core.camera import Camera
 from ..core.cell import Cell
 from ..core.errors import InvalidValue
@@ -104,6 +105,7 @@ def look_through(context: Any) -> None:
 
     space = area.spaces.active
     region = next(r for r in area.regions if r.type == "WINDOW")
+    _aim(context.scene, space.region_3d)
     space.region_3d.view_perspective = "CAMERA"
     space.use_local_camera = False
     fit_picture(context.scene, region, space, free_part(area, region))
@@ -138,11 +140,24 @@ def _pose_or_guess(cell: Cell) -> Pose:
     """The camera's pose, or for a camera without one a place that overlooks its sightings."""
     if cell.camera.camera_from_world is not None:
         return cell.camera.camera_from_world
-    centres = np.array([s.center_world for s in cell.sightings] or [[0.0, 0.0, 0.0]])
-    middle = centres.mean(axis=0)
-    reach = float(np.linalg.norm(centres - middle, axis=1).max())
+    middle = _middle(cell)
+    reach = max((np.linalg.norm(s.center_world - middle) for s in cell.sightings), default=0.0)
     direction = FIRST_DIRECTION / np.linalg.norm(FIRST_DIRECTION)
-    return Pose.looking_at(middle + max(LEAST_DISTANCE, 3 * reach) * direction, middle, [0, 0, 1])
+    return Pose.looking_at(
+        middle + max(LEAST_DISTANCE, 3 * float(reach)) * direction, middle, [0, 0, 1]
+    )
+
+
+def _aim(scene: Any, view: Any) -> None:
+    """Let the view turn about the cell's middle when the user leaves the camera."""
+    middle = _middle(bare_cell(scene))
+    view.view_location = middle.tolist()
+    view.view_distance = float(np.linalg.norm(np.array(scene.camera.matrix_world)[:3, 3] - middle))
+
+
+def _middle(cell: Cell) -> Array:
+    """The middle of the ball's positions, (3,); the world's origin without any."""
+    return np.array([s.center_world for s in cell.sightings] or [[0.0, 0.0, 0.0]]).mean(axis=0)
 
 
 def _new_camera(scene: Any) -> Any:

@@ -78,7 +78,7 @@ def _fill_sightings(stored: Any, cell: Cell, report: Report | None) -> None:
     for i, sighting in enumerate(cell.sightings):
         row = stored.sightings.add()
         row.picture = sighting.picture
-        row.place = "  ".join(f"{x:.3f}" for x in sighting.center_world)
+        row.place = ", ".join(f"{x:.2f}" for x in sighting.center_world)
         if report is not None:
             seen = report.sightings[i]
             row.status, row.reason = seen.status, seen.reason

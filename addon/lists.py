@@ -18,12 +18,12 @@ class SightingList(bpy.types.UIList):
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_property, index):
         """One row."""
-        row = layout.row(align=True)
-        row.label(text=item.picture, icon=STATUS_ICONS[item.status])
+        named = layout.split(factor=0.36, align=True)
+        name = item.picture.rpartition("/")[2]
+        named.label(text=name, icon=STATUS_ICONS[item.status])
+        row = named.split(factor=0.66, align=True)
         row.label(text=item.place)
-        right = row.row()
-        right.alignment = "RIGHT"
-        right.label(text=item.residual or item.status)
+        row.label(text=item.residual or item.status)
 
 
 class ReferenceList(bpy.types.UIList):

@@ -33,24 +33,24 @@ class CameraPanel(CellPanel, bpy.types.Panel):
             return
         cell = bare_cell(scene)
         if cell.sightings:
-            self._draw_sightings(layout, context)
-            again = "Calibrate Again" if cell.camera.camera_from_world is not None else "Calibrate"
-            layout.operator(Calibrate.bl_idname, text=again, icon="CON_CAMERASOLVER")
+            self._draw_sightings(layout, context, cell)
         self._draw_pose(layout, context, cell)
 
-    def _draw_sightings(self, layout, context):
+    def _draw_sightings(self, layout, context, cell):
         stored = context.scene.monocell_cell
         layout.template_list(
             SightingList.bl_idname, "", stored, "sightings", stored, "sighting_index", rows=4
         )
-        if not 0 <= stored.sighting_index < len(stored.sightings):
-            return
-        row = stored.sightings[stored.sighting_index]
-        if row.reason:
-            paragraph(layout, context, f"{row.status}: {row.reason}", "INFO")
-        if row.picture != stored.shown_picture:
-            shown = layout.operator(ShowPicture.bl_idname, icon="IMAGE_BACKGROUND")
-            shown.picture = row.picture
+        active = stored.sightings[min(stored.sighting_index, len(stored.sightings) - 1)]
+        if active.reason:
+            paragraph(layout, context, f"{active.status}: {active.reason}", "INFO")
+        row = layout.row(align=True)
+        again = "Calibrate Again" if cell.camera.camera_from_world is not None else "Calibrate"
+        row.operator(Calibrate.bl_idname, text=again, icon="CON_CAMERASOLVER")
+        shown = row.operator(ShowPicture.bl_idname, text="", icon="IMAGE_BACKGROUND")
+        # a second press goes back to the cell's own picture
+        back = active.picture == stored.shown_picture and cell.picture is not None
+        shown.picture = cell.picture if back else active.picture
 
     def _draw_pose(self, layout, context, cell):
         camera, report = cell.camera, stored_report(context.scene)
@@ -97,4 +97,5 @@ def _pose_rows(camera, report):
         x, y, z = np.degrees(camera.rotation_sigma())
         yield "Turned ±", f"{x:.3f}  {y:.3f}  {z:.3f}°"
     if report is not None:
-        yield "Outlines", f"{report.rms_pixels:.2f} px rms, bias {report.edge_bias_pixels:+.2f} px"
+        yield "Outlines", f"{report.rms_pixels:.2f} px rms"
+        yield "Edge bias", f"{report.edge_bias_pixels:+.2f} px"

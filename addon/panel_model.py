@@ -33,7 +33,14 @@ class ModelPanel(CellPanel, bpy.types.Panel):
             return
         layout.label(text="Stands on")
         layout.template_list(
-            ReferenceList.bl_idname, "", stored, "references", stored, "reference_index", rows=2
+            ReferenceList.bl_idname,
+            "",
+            stored,
+            "references",
+            stored,
+            "reference_index",
+            rows=1,
+            maxrows=2,
         )
         row = layout.row(align=True)
         row.scale_y = 1.3
@@ -92,7 +99,7 @@ def _rows(thing):
     for i, (name, size) in enumerate(zip(thing.size_names, thing.sizes, strict=True)):
         error = "" if sigmas is None or sigmas[i] == 0 else f" ± {1e3 * sigmas[i]:.1f}"
         yield name.replace("size_", "Size ").capitalize(), f"{1e3 * size:.1f}{error} mm"
-    for axis, i in zip("xyz", range(3), strict=True):
-        error = "" if place is None else f" ± {1e3 * place[i]:.1f}"
-        yield f"Centre {axis}", f"{1e3 * thing.world_from_object.translation[i]:.1f}{error} mm"
+    yield "Centre", ", ".join(f"{1e3 * x:.1f}" for x in thing.world_from_object.translation) + " mm"
+    if place is not None:
+        yield "± 1 sigma", ", ".join(f"{1e3 * x:.1f}" for x in place) + " mm"
     yield "Stands on", thing.on or "nothing named"

@@ -32,7 +32,7 @@ def numbers(layout, rows):
     column = layout.column(align=True)
     column.scale_y = 0.8
     for name, value in rows:
-        split = column.split(factor=0.36)
+        split = column.split(factor=0.3)
         left = split.row()
         left.alignment = "RIGHT"
         left.label(text=name)

@@ -42,12 +42,13 @@ class PicturePanel(CellPanel, bpy.types.Panel):
         numbers(
             layout,
             (
-                ("Picture", scene.monocell_cell.shown_picture or "none"),
+                ("Shown", scene.monocell_cell.shown_picture or "no picture"),
                 ("Size", f"{camera.width} × {camera.height} px"),
                 ("Focal", f"{camera.fx:.1f}, {camera.fy:.1f} px"),
                 ("Centre", f"{camera.cx:.1f}, {camera.cy:.1f} px"),
                 ("Lens", camera.distortion.model.replace("_", " ")),
             ),
         )
-        layout.operator(LookThrough.bl_idname, icon="VIEW_CAMERA")
-        layout.operator(OpenCell.bl_idname, text="Open Another Document", icon="FILE_FOLDER")
+        row = layout.row(align=True)
+        row.operator(LookThrough.bl_idname, text="Look Through", icon="VIEW_CAMERA")
+        row.operator(OpenCell.bl_idname, text="Open Another", icon="FILE_FOLDER")

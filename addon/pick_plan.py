@@ -19,7 +19,7 @@ from ..core.reverse_mapping import points_on_line_or_nan, points_on_plane_or_nan
 class PickPlan:
     """The clicks of one kind: `foot` on the reference in `prompts`, then one that sets the height.
 
-    `flat` is the known size that stands for the height while there is none yet.
+    More than that one make the height surer. `flat` is the known size that stands for the height while there is none yet.
     """
 
     kind: str
@@ -68,13 +68,13 @@ def picks_of(
     """The document's picks from clicked pixels (2,) of the picture as it came, in their order."""
     foot = [pixel.tolist() for pixel in pixels[: plan.foot_clicks]]
     picks: dict[str, list[Any]] = {plan.foot: foot}
-    if len(pixels) == plan.clicks:
-        top = pixels[-1].tolist()
-        if plan.kind == "box":
-            corner = corner_below(camera, plane, np.array(foot), pixels[-1])
-            picks["top"] = [top if i == corner else None for i in range(4)]
-        else:
-            picks["top"] = [top]
+    tops = pixels[plan.foot_clicks :]
+    if tops and plan.kind == "box":
+        # of two picks above one corner the later is meant
+        above = {corner_below(camera, plane, np.array(foot), top): top.tolist() for top in tops}
+        picks["top"] = [above.get(i) for i in range(4)]
+    elif tops:
+        picks["top"] = [top.tolist() for top in tops]
     return picks
 
 

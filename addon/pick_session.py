@@ -44,13 +44,15 @@ class PickSession:
 
     @property
     def complete(self) -> bool:
-        """Whether every click has been made."""
-        return len(self.pixels) == self.plan.clicks
+        """Whether all clicks that are needed have been made."""
+        return len(self.pixels) >= self.plan.clicks
 
     @property
     def prompt(self) -> str:
         """What the next click is for."""
-        return "done" if self.complete else self.plan.prompts[len(self.pixels)]
+        if self.complete:
+            return "another point of the top, or Enter"
+        return self.plan.prompts[len(self.pixels)]
 
     def picked(self, pixel: Array) -> PickSession:
         """With one click more."""
@@ -72,8 +74,6 @@ class PickSession:
         """The object as it would be with a click at the cursor (2,), a pixel of the picture."""
         if cursor is None:
             return Preview((), "outside the picture", "")
-        if self.complete:
-            return Preview((), "", "")
         after = self.picked(cursor)
         try:
             place = self._place(cursor)
@@ -94,7 +94,7 @@ class PickSession:
 
     def _place(self, pixel: Array) -> str:
         """Where a click would hit the reference, in metres; nothing while the height is set."""
-        if len(self.pixels) == self.plan.foot_clicks:
+        if len(self.pixels) >= self.plan.foot_clicks:
             return ""
         x, y, z = points_on_plane(self.camera, self.plane, pixel[None])[0]
         return f"x {x:.3f}   y {y:.3f}   z {z:.3f} m"

@@ -89,15 +89,16 @@ class PicksOnPicture:
         self._end(context)
 
     def _press(self, context, area, event):
+        picked, more = False, event.shift
         if event.type == "LEFTMOUSE":
             self._follow(area, event)
             pixel = self._pixel(context, area)
             # what can't be the object is not taken; the words beside the cursor say why
             if pixel is not None and not self._preview(pixel).complaint:
-                self._session = self._session.picked(pixel)
+                self._session, picked = self._session.picked(pixel), True
         elif event.type == "BACK_SPACE":
             self._session = self._session.taken_back()
-        if self._session.complete or event.type in DONE_EVENTS:
+        if (picked and self._session.complete and not more) or event.type in DONE_EVENTS:
             return self._finish(context)
         self._shown = None
         self._tell(context)
@@ -173,9 +174,12 @@ class PicksOnPicture:
             row = header.layout.row(align=True)
             for icon, text in (
                 ("MOUSE_LMB", prompt),
-                ("MOUSE_MMB", "Pan"),
-                ("EVENT_BACKSPACE", "Take back"),
-                ("EVENT_ESC", "Cancel"),
+                # the signs of long keys reach beyond the room that Blender gives an icon
+                ("EVENT_SHIFT", "    with a click: more points of the top"),
+                ("EVENT_BACKSPACE", "    Take back"),
+                ("EVENT_RETURN", "    Done"),
+                ("EVENT_ESC", "   Cancel"),
+                ("MOUSE_MMB", "Pan, wheel zooms"),
             ):
                 row.label(text=text, icon=icon)
                 row.separator(factor=2.0)

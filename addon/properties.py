@@ -15,7 +15,7 @@ class SightingRow(bpy.types.PropertyGroup):
     """One line of the list of sightings: texts to show, nothing to compute with."""
 
     picture: StringProperty(name="Picture")
-    place: StringProperty(name="Centre of the ball in the world, m")
+    place: StringProperty(name="Centre of the ball in the world, m, to a centimetre")
     status: StringProperty(name="Status")
     residual: StringProperty(name="Residual")
     reason: StringProperty(name="Reason")

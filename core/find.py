@@ -13,11 +13,13 @@ from .errors import SphereCut, SphereNotFound
 from .intrinsics import Intrinsics
 from .outline import OutlineMeter, SphereOutline
 from .pictures import Picture, check_size, linear_light
-from .ring_search import Pyramid, RoughSphere, circle_of, search_ring
+from .ring_search import NARROW, WIDE, Pyramid, RoughSphere, Span, circle_of, search_ring
 
 Window = tuple[float, float, float, float]
 
-SEARCHED, MEASURED = 24, 4
+SEARCHED, SEARCHED_IN_WINDOW, NARROWED, MEASURED = 24, 8, 5, 4
+# an outline this clear ends the search: what is left had less agreement already
+CLEAR_EVIDENCE, CLEAR_COVERAGE = 8.0, 0.45
 LEAST_AGREEMENT, SHARE_BY_CHANCE = 0.33, 0.25
 INDEPENDENT_EDGES = 300
 # around the rough outline, as a share of its radius and in pixels, what the fine measurement sees
@@ -35,6 +37,17 @@ def find_spheres(
     Raises PictureError when the picture is not of the camera's size, SphereNotFound when there is
     no ball that can be believed, and SphereCut when the best leaves the picture.
     """
+    return _found(picture, intrinsics, radius, window, until_clear=False)
+
+
+def _found(
+    picture: Picture,
+    intrinsics: Intrinsics,
+    radius: float,
+    window: Window | None,
+    *,
+    until_clear: bool,
+) -> tuple[SphereOutline, ...]:
     positive(radius, "radius")
     check_size(picture, intrinsics, "the picture")
     coded = _eight_bits(picture)
@@ -44,15 +57,19 @@ def find_spheres(
         Circle(c.u + left, c.v + top, c.radius, c.support)
         for c in vote_for_circles(crop, largest=_largest(window, intrinsics))
     ]
-    roughs = _roughs(Pyramid(coded), intrinsics, circles[:SEARCHED], radius)
-    return _measured(picture, intrinsics, radius, roughs, _where(window))
+    most = SEARCHED if window is None else SEARCHED_IN_WINDOW
+    roughs = _roughs(Pyramid(coded), intrinsics, circles[:most], radius)
+    return _measured(picture, intrinsics, radius, roughs, _where(window), until_clear)
 
 
 def find_sphere(
     picture: Picture, intrinsics: Intrinsics, radius: float, window: Window | None = None
 ) -> SphereOutline:
-    """The ball in a picture: the best of `find_spheres`, which see for what is raised."""
-    return find_spheres(picture, intrinsics, radius, window)[0]
+    """The ball in a picture: the best of `find_spheres`, which see for what is raised.
+
+    Places are measured from the most agreed on, until one is clear.
+    """
+    return _found(picture, intrinsics, radius, window, until_clear=True)[0]
 
 
 def measure_sphere(
@@ -76,10 +93,18 @@ def _roughs(
     pyramid: Pyramid, intrinsics: Intrinsics, circles: list[Circle], radius: float
 ) -> list[RoughSphere]:
     """The rough spheres that enough edges agree on, each place once, the best first."""
+    wide = _searched(pyramid, intrinsics, circles, radius, WIDE)
+    circles = [circle_of(intrinsics, rough.centre_camera, radius) for rough in wide[:NARROWED]]
+    return _searched(pyramid, intrinsics, circles, radius, NARROW)[:MEASURED]
+
+
+def _searched(
+    pyramid: Pyramid, intrinsics: Intrinsics, circles: list[Circle], radius: float, span: Span
+) -> list[RoughSphere]:
     found: list[tuple[float, RoughSphere]] = []
     for circle in circles:
         try:
-            rough = search_ring(pyramid, intrinsics, circle, radius)
+            rough = search_ring(pyramid, intrinsics, circle, radius, span)
         except SphereNotFound:
             continue
         if rough.agreement >= LEAST_AGREEMENT:
@@ -88,7 +113,7 @@ def _roughs(
     for _, rough in sorted(found, key=lambda pair: -pair[0]):
         if not any(_same(rough.centre_camera, kept.centre_camera, radius) for kept in distinct):
             distinct.append(rough)
-    return distinct[:MEASURED]
+    return distinct
 
 
 def _measured(
@@ -97,6 +122,7 @@ def _measured(
     radius: float,
     roughs: list[RoughSphere],
     where: str,
+    until_clear: bool,
 ) -> tuple[SphereOutline, ...]:
 
     outlines: list[SphereOutline] = []
@@ -111,6 +137,9 @@ def _measured(
             continue
         if not any(_same(outline.centre_camera, o.centre_camera, radius) for o in outlines):
             outlines.append(outline)
+        clear = outline.evidence > CLEAR_EVIDENCE and outline.coverage > CLEAR_COVERAGE
+        if until_clear and clear:
+            break
     if outlines:
         return tuple(sorted(outlines, key=lambda o: o.evidence, reverse=True))
     if refusal is not None:

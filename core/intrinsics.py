@@ -88,9 +88,13 @@ class Intrinsics:
         `J^T (J J^T)^-1`.
         """
         rays = self.rays(pixels)
-        _, jacobian = self.project_with_jacobian(rays)
+        return rays, self.pixels_with_jacobian(rays)[1]
+
+    def pixels_with_jacobian(self, rays: ArrayLike) -> tuple[Array, Array]:
+        """Unit rays (N, 3) to pixels (N, 2), and the derivative of ray by pixel, (N, 3, 2)."""
+        pixels, jacobian = self.project_with_jacobian(rays)
         transposed = np.swapaxes(jacobian, 1, 2)
-        return rays, transposed @ _inverses(jacobian @ transposed)
+        return pixels, transposed @ _inverses(jacobian @ transposed)
 
     def contains(self, pixels: ArrayLike) -> Mask:
         """Which pixels (N, 2) lie in the picture, half a pixel of rim included."""

@@ -14,10 +14,12 @@ from .intrinsics import Intrinsics
 from .limb import LimbEdges, find_limb, sample_offsets
 from .pictures import Light
 from .robust import beside_runs, correlation_inflation, robust_sigma, tukey_weights
-from .sphere import OutlineRays, Tangency, outline_pixels, tangency
+from .sphere import OutlineRays, Tangency, tangency
 
 MOST_POINTS, FEWEST_POINTS = 400, 48
-BLURS = np.array([0.4, 0.5, 0.6, 0.72, 0.87, 1.05, 1.3, 1.7, 2.3, 3.0])
+BLURS = np.array([0.4, 0.53, 0.7, 0.93, 1.25, 1.7, 2.3, 3.1])
+SHARPNESS_POINTS = 120
+FIRST_BLUR = 0.8
 # an edge has to explain its profile this much better than no edge, in units of the noise
 SIGNIFICANT_GAIN = 25.0
 # what a perfect edge is still uncertain by: sampling, the model of the limb
@@ -63,10 +65,21 @@ class SphereOutline:
 
 
 @dataclass(frozen=True, eq=False)
+class _Profiles:
+    """Light (N, K, C) sampled across N places of an outline, within `reach` pixels of it."""
+
+    light: Array
+    reach: float
+    places: OutlineRays
+    normals: Array
+    inside: Mask
+
+
+@dataclass(frozen=True, eq=False)
 class _Measured:
     """One pass around the outline: where edges are, how sure, and which profiles lie inside."""
 
-    pixels: Array
+    outline: OutlineRays
     edges: LimbEdges
     noise: float
     inside: Mask
@@ -85,9 +98,9 @@ class OutlineMeter:
         Raises SphereNotFound when too little of the outline has an edge where it should be, and
         SphereCut when too much of it lies outside the picture.
         """
-        centre, blur, contrast = rough_centre, 0.8, 0.1
-        for search in (4.0, 3.0):
-            measured = self._pass(centre, search, blur, contrast)
+        centre, contrast = rough_centre, 0.1
+        for search in (4.0, 2.5):
+            measured = self._pass(centre, search, FIRST_BLUR, contrast)
             centre, contrast = self._fitted(centre, measured), _noise_to_contrast(measured)
         blur = self._sharpness(centre, contrast)
         for search in (2.0, 1.5):
@@ -96,26 +109,34 @@ class OutlineMeter:
         coverage, evidence = self._coverage(centre, blur, contrast)
         return self._judged(centre, measured, blur, coverage, evidence)
 
-    def _pass(
-        self, centre: Array, search: float, blur: float, contrast: float, every: int = 1
-    ) -> _Measured:
-        size = self._size_pixels(centre)
-        count = int(np.clip(2 * np.pi * size, FEWEST_POINTS, MOST_POINTS)) // every
-        middle = outline_pixels(self._intrinsics, centre, self._radius, count)
-        if not np.isfinite(middle).all():
-            raise SphereNotFound("part of the outline lies outside what the lens images")
-        normals = tangency(OutlineRays.of(self._intrinsics, middle), centre, self._radius).normals
-        reach = min(max(4.0, 2.5 * blur + 2.0, search + 2.5), 0.6 * size)
-        search = min(search, 0.5 * reach)
-        offsets = sample_offsets(reach)
-        at = middle[:, None] + normals[:, None] * offsets[:, None]
-        inside = self._intrinsics.contains(at[:, 0]) & self._intrinsics.contains(at[:, -1])
-        profiles = self._sampled(at)
-        edges = find_limb(profiles, reach, search, blur, size, contrast)
-        freedom = max(1, len(offsets) * profiles.shape[2] - 4 * profiles.shape[2] - 1)
+    def _pass(self, centre: Array, search: float, blur: float, contrast: float) -> _Measured:
+        profiles = self._profiles(centre, max(4.0, 2.5 * blur + 2.0, search + 2.5))
+        edges = find_limb(
+            profiles.light,
+            profiles.reach,
+            min(search, 0.5 * profiles.reach),
+            blur,
+            self._size_pixels(centre),
+            contrast,
+        )
+        _, samples, channels = profiles.light.shape
+        freedom = max(1, (samples - 4) * channels - 1)
         noise = float(np.sqrt(max(float(np.median(edges.misfits)) / freedom, 1e-12)))
-        pixels = middle + normals * edges.offsets_pixels[:, None]
-        return _Measured(pixels, edges, noise, inside)
+        outline = profiles.places.moved(profiles.normals, edges.offsets_pixels)
+        return _Measured(outline, edges, noise, profiles.inside)
+
+    def _profiles(self, centre: Array, reach: float, most: int = MOST_POINTS) -> _Profiles:
+        size = self._size_pixels(centre)
+        reach = min(reach, 0.6 * size)
+        count = int(np.clip(2 * np.pi * size, FEWEST_POINTS, most))
+        places = OutlineRays.around(self._intrinsics, centre, self._radius, count)
+        if not np.isfinite(places.pixels).all():
+            raise SphereNotFound("part of the outline lies outside what the lens images")
+        normals = tangency(places, centre, self._radius).normals
+        offsets = sample_offsets(reach)
+        at = places.pixels[:, None] + normals[:, None] * offsets[:, None]
+        inside = self._intrinsics.contains(at[:, 0]) & self._intrinsics.contains(at[:, -1])
+        return _Profiles(self._sampled(at), reach, places, normals, inside)
 
     def _sampled(self, at: Array) -> Array:
         places = (at - self._origin).astype(np.float32)
@@ -152,7 +173,7 @@ class OutlineMeter:
     def _fitted(self, centre: Array, measured: _Measured) -> Array:
         """The sphere through the edges, by reweighted Gauss-Newton steps."""
         candidates = self._candidates(measured)
-        outline = OutlineRays.of(self._intrinsics, measured.pixels[candidates])
+        outline = measured.outline.chosen(candidates)
         sigma = self._sigmas(measured)[candidates]
         for _ in range(6):
             held = tangency(outline, centre, self._radius)
@@ -172,13 +193,17 @@ class OutlineMeter:
 
     def _sharpness(self, centre: Array, contrast: float) -> float:
         """The blur that explains the profiles best, between the steps by a parabola."""
-        every = 3 if self._size_pixels(centre) > 40 else 1
+        profiles = self._profiles(centre, 6.0, SHARPNESS_POINTS)
+        size, reach = self._size_pixels(centre), profiles.reach
+        light = profiles.light[profiles.inside]
+        if len(light) < 8:
+            raise _cut_refusal(1 - float(profiles.inside.mean()))
         left = []
         for blur in BLURS:
-            measured = self._pass(centre, 1.5, float(blur), contrast, every)
+            edges = find_limb(light, reach, min(1.5, 0.5 * reach), float(blur), size, contrast)
             # the worst profiles cross a finger or a texture and tell nothing of the sharpness
-            kept = np.sort(measured.edges.misfits[self._candidates(measured)])
-            left.append(kept[: max(6, int(0.7 * len(kept)))].mean())
+            kept = np.sort(edges.misfits)
+            left.append(kept[: max(6, int(0.6 * len(kept)))].mean())
         i = int(np.clip(np.argmin(left), 1, len(BLURS) - 2))
         a, b, _ = np.polyfit(np.log(BLURS[i - 1 : i + 2]), left[i - 1 : i + 2], 2)
         best = np.exp(-b / (2 * a)) if a > 0 else BLURS[np.argmin(left)]
@@ -192,8 +217,7 @@ class OutlineMeter:
         size = self._size_pixels(centre)
         search = max(min(JUDGED_PIXELS, 0.3 * size), JUDGED_SHARE * size)
         measured = self._pass(centre, search, blur, contrast)
-        outline = OutlineRays.of(self._intrinsics, measured.pixels)
-        outside = tangency(outline, centre, self._radius).residual_pixels
+        outside = tangency(measured.outline, centre, self._radius).residual_pixels
         spread = 3 * np.sqrt(2 * measured.noise**2 / measured.edges.curvatures)
         band = max(BELONGS_PIXELS, BELONGS_SHARE * size) + np.minimum(spread, BELONGS_PIXELS)
         significant = measured.edges.gains > SIGNIFICANT_GAIN * measured.noise**2
@@ -206,7 +230,7 @@ class OutlineMeter:
         self, centre: Array, measured: _Measured, blur: float, coverage: float, evidence: float
     ) -> SphereOutline:
         candidates = self._candidates(measured)
-        outline = OutlineRays.of(self._intrinsics, measured.pixels[candidates])
+        outline = OutlineRays.of(self._intrinsics, measured.outline.pixels[candidates])
         held = tangency(outline, centre, self._radius)
         sigma = self._sigmas(measured)[candidates]
         scaled = held.residual_pixels / sigma
@@ -223,7 +247,7 @@ class OutlineMeter:
             centre,
             _covariance(held, sigma, used),
             self._radius,
-            measured.pixels[candidates],
+            outline.pixels,
             sigma,
             held.residual_pixels,
             used,

@@ -27,8 +27,8 @@ class Pose:
     Raises InvalidValue when the rotation is not orthonormal to 1e-3 or mirrors.
 
     >>> half_turn = Pose.from_rotation_vector([0, 0, 3.141592653589793], [1, 0, 0])
-    >>> half_turn.apply([[1, 0, 0]]).round(9).tolist()
-    [[0.0, 0.0, 0.0]]
+    >>> half_turn.apply([[2, 1, 0]]).round(9).tolist()
+    [[-1.0, -1.0, 0.0]]
     """
 
     rotation: Array

@@ -50,9 +50,8 @@ class SeenBall:
     @staticmethod
     def of(centre_world: Array, outline: SphereOutline, rays: OutlineRays) -> SeenBall:
         used = outline.used
-        kept = OutlineRays(rays.pixels[used], rays.rays[used], rays.rays_by_pixel[used])
         observation = OutlineObservation(
-            kept, outline.sigma_pixels[used], centre_world, outline.radius
+            rays.chosen(used), outline.sigma_pixels[used], centre_world, outline.radius
         )
         return SeenBall(centre_world, outline, observation)
 

@@ -23,7 +23,7 @@ from .sphere import outline_pixels, sphere_at, sphere_from_rays
 
 PROFILES, SAMPLES = 72, 41
 EDGES_PER_PROFILE = 3
-TRIALS = 200
+TRIALS = 150
 AGREEMENT_PIXELS = 0.5
 
 
@@ -73,29 +73,18 @@ class Pyramid:
 
 
 def search_ring(
-    pyramid: Pyramid, intrinsics: Intrinsics, circle: Circle, radius: float, seed: int = 0
+    pyramid: Pyramid,
+    intrinsics: Intrinsics,
+    circle: Circle,
+    radius: float,
+    span: Span = WIDE,
+    seed: int = 0,
 ) -> RoughSphere:
-    """The sphere of `radius` metres near a rough circle. Raises SphereNotFound when none agrees."""
-    first = _agreed(pyramid, intrinsics, circle, radius, WIDE, seed)
-    # from a middle that is off, the profiles cross the outline aslant: look again from the new one
-    better = circle_of(intrinsics, first.centre_camera, radius)
-    return _agreed(pyramid, intrinsics, better, radius, NARROW, seed)
+    """The sphere of `radius` metres near a rough circle. Raises SphereNotFound when none agrees.
 
-
-def circle_of(intrinsics: Intrinsics, centre_camera: Array, radius: float) -> Circle:
-    """The circle closest to a sphere's outline. Raises SphereNotFound if it is not seen."""
-    outline = outline_pixels(intrinsics, centre_camera, radius, 36)
-    outline = outline[np.isfinite(outline).all(axis=1)]
-    if len(outline) < 12:
-        raise SphereNotFound("the outline lies outside what the lens images")
-    middle = outline.mean(axis=0)
-    mean_radius = float(np.linalg.norm(outline - middle, axis=1).mean())
-    return Circle(float(middle[0]), float(middle[1]), mean_radius, 0.0)
-
-
-def _agreed(
-    pyramid: Pyramid, intrinsics: Intrinsics, circle: Circle, radius: float, span: Span, seed: int
-) -> RoughSphere:
+    From a middle that is off, the profiles cross the outline aslant: what `WIDE` finds is looked at
+    again with `NARROW`.
+    """
     edges = _edges_around(pyramid, circle, span)
     rays = intrinsics.rays(edges.pixels)
     good = np.isfinite(rays).all(axis=1)
@@ -114,6 +103,17 @@ def _agreed(
         if within.sum() < 6:
             raise SphereNotFound(f"edges around ({circle.u:.0f}, {circle.v:.0f}) form no outline")
     return RoughSphere(centre, float(_votes(off[None], edges, tolerance)[0]) / PROFILES)
+
+
+def circle_of(intrinsics: Intrinsics, centre_camera: Array, radius: float) -> Circle:
+    """The circle closest to a sphere's outline. Raises SphereNotFound if it is not seen."""
+    outline = outline_pixels(intrinsics, centre_camera, radius, 36)
+    outline = outline[np.isfinite(outline).all(axis=1)]
+    if len(outline) < 12:
+        raise SphereNotFound("the outline lies outside what the lens images")
+    middle = outline.mean(axis=0)
+    mean_radius = float(np.linalg.norm(outline - middle, axis=1).mean())
+    return Circle(float(middle[0]), float(middle[1]), mean_radius, 0.0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -47,12 +47,13 @@ def beside_runs(outliers: Mask, run: int = 3, margin: int = 3) -> Mask:
 
     Where something hides the outline, the edges next to its border are still there but pulled.
     """
-    in_run = outliers.copy()
-    for shift in range(1, run):
-        in_run &= np.roll(outliers, shift)
-    near = in_run.copy()
-    for shift in range(1, margin + run):
-        near |= np.roll(in_run, -shift)
-    for shift in range(1, margin + 1):
-        near |= np.roll(in_run, shift)
-    return near
+    count = len(outliers)
+    if not outliers.any() or count < run + 2 * margin:
+        return np.zeros(count, dtype=bool)
+    closed = np.concatenate([outliers[-(run + margin) :], outliers, outliers[: run + margin]])
+    starts = np.convolve(closed, np.ones(run, dtype=int), mode="full") >= run
+    near = np.convolve(starts, np.ones(run + 2 * margin, dtype=int), mode="full") > 0
+    # a run that ends at k marks k - run + 1 - margin to k + margin; each convolution ends late
+    first = 2 * (run + margin) - 1
+    marked: Mask = near[first : first + count]
+    return marked

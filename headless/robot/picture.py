@@ -75,7 +75,7 @@ def default_view(
     things = np.vstack(corners or [base[None] + [[0.5, 0, 0]]])
     every = np.vstack([things, links, base[None], *traces])
     middle = (every.min(axis=0) + every.max(axis=0)) / 2
-    radius = float(np.linalg.norm(every - middle, axis=1).max()) + 0.06
+    radius = float(np.linalg.norm(every - middle, axis=1).max()) + 0.1
     outward = things.mean(axis=0) - base
     azimuth = np.arctan2(outward[1], outward[0]) - 0.75
     elevation, angle = 0.46, 0.56

@@ -118,10 +118,12 @@ def fetch_wheels():
     if not missing:
         return
     named = ["==".join(wheel.split("-")[:2]) for wheel in missing]
+    options = (
+        "--quiet --no-deps --only-binary=:all: --python-version 3.13 --abi abi3 --abi none "
+        "--platform manylinux2014_x86_64 --platform any"
+    )
     fetched = subprocess.run(
-        [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--dest", str(WHEELS)]
-        + ["--only-binary=:all:", "--python-version", "3.13", "--abi", "abi3", "--abi", "none"]
-        + ["--platform", "manylinux2014_x86_64", "--platform", "any", *named],
+        [sys.executable, "-m", "pip", "download", *options.split(), "--dest", WHEELS, *named],
         capture_output=True,
         text=True,
         check=False,

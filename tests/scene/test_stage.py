@@ -156,11 +156,13 @@ def test_a_process_that_rendered_a_stage_ends_in_peace(tmp_path):
         f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r})\n"
         "from test_stage import *\n"
         "from monocell.scene.stage import Stage\n"
-        "with Stage(cell_with(ball=ball_at([0.3, 0, 0.2]))) as stage:\n"
-        "    stage.linear(samples=1)\n"
-        "    stage.move((), ball_at([0.2, 0, 0.2]))\n"
-        "    stage.linear(samples=1)\n"
+        "flange = Pose(np.diag([1.0, -1.0, -1.0]), [0.3, 0.0, 0.38])\n"
+        f"parts = tuple(part_of(Path({str(tmp_path)!r}), name=f'{{i}}.obj') for i in range(8))\n"
+        "with Stage(cell_with(ball=ball_at([0.3, 0, 0.2], flange), parts=parts)) as stage:\n"
+        "    for _ in range(2):\n"
+        f"        stage.render({str(tmp_path / 'x.png')!r}, samples=1)\n"
+        "        stage.move(parts, ball_at([0.2, 0, 0.2], flange))\n"
     )
-    for _ in range(6):
+    for _ in range(8):
         done = subprocess.run([sys.executable, script], capture_output=True, check=False)
         assert done.returncode == 0, done.stderr.decode()[-500:]
