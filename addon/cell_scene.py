@@ -38,10 +38,6 @@ def open_scene(context: Any, cell: Cell, title: str) -> Any:
     name = shown_first(cell)
     picture = None if name is None else read_picture(cell.path_of(name), cell.camera.intrinsics)
     with _new_scene(title) as scene:
-        stored = scene.monocell_cell
-        stored.collection = bpy.data.collections.new("Cell objects")
-        scene.collection.children.link(stored.collection)
-        stored.camera = _new_camera(scene)
         write_scene(scene, cell)
         put_camera(scene)
         if picture is not None:
@@ -62,16 +58,15 @@ def show_picture(scene: Any, name: str, picture: Any) -> None:
     """Show a picture (H, W, 3), undistorted, behind the camera view. Raises PictureError."""
     from ..scene.background import show_background
 
-    stored = scene.monocell_cell
-    show_background(stored.camera, picture, bare_cell(scene).camera.intrinsics)
-    stored.shown_picture = name
+    show_background(_camera_of(scene), picture, bare_cell(scene).camera.intrinsics)
+    scene.monocell_cell.shown_picture = name
 
 
 def put_camera(scene: Any) -> None:
     """Give Blender's camera the lens and place of the document's; it is locked against slips."""
     from ..scene.blender_camera import place_camera
 
-    ob, cell = scene.monocell_cell.camera, bare_cell(scene)
+    ob, cell = _camera_of(scene), bare_cell(scene)
     place_camera(ob, scene.render, cell.camera.intrinsics, _pose_or_guess(cell))
     ob.lock_location = ob.lock_rotation = ob.lock_scale = (True, True, True)
     scene.camera = ob
@@ -82,7 +77,7 @@ def camera_stands(scene: Any) -> bool:
     from ..scene.blender_camera import read_camera
 
     ob, cell = scene.monocell_cell.camera, bare_cell(scene)
-    if ob is None or scene.camera != ob:
+    if ob is None or scene.camera != ob or scene.objects.get(ob.name) != ob:
         return False
     try:
         now = read_camera(ob, scene.render)
@@ -160,13 +155,18 @@ def _middle(cell: Cell) -> Array:
     return np.array([s.center_world for s in cell.sightings] or [[0.0, 0.0, 0.0]]).mean(axis=0)
 
 
-def _new_camera(scene: Any) -> Any:
-    ob = bpy.data.objects.new("Cell camera", bpy.data.cameras.new("Cell camera"))
-    # a cell may begin a hand's breadth from the lens
-    ob.data.clip_start, ob.data.clip_end = 0.01, 100.0
-    ob.data.passepartout_alpha = 0.85
-    scene.collection.objects.link(ob)
-    return ob
+def _camera_of(scene: Any) -> Any:
+    """The cell's camera; made, or linked again, where a user removed it."""
+    stored = scene.monocell_cell
+    if stored.camera is None:
+        stored.camera = bpy.data.objects.new("Cell camera", bpy.data.cameras.new("Cell camera"))
+        data = stored.camera.data
+        # a cell may begin a hand's breadth from the lens
+        data.clip_start, data.clip_end = 0.01, 100.0
+        data.passepartout_alpha, data.display_size = 0.85, 0.15
+    if scene.objects.get(stored.camera.name) != stored.camera:
+        scene.collection.objects.link(stored.camera)
+    return stored.camera
 
 
 @contextmanager

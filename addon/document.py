@@ -13,6 +13,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+import bpy
+
 from ..core.cell import Cell
 from ..core.cell_file import cell_from_document, document_from_cell, dumped
 from ..core.reference import ReferencePlane
@@ -69,8 +71,19 @@ def show_objects(scene: Any, cell: Cell) -> None:
     """Build every object of `cell`, in place where it is there already."""
     from ..scene.objects import build_object
 
+    collection = objects_collection(scene)
     for thing in cell.objects:
-        build_object(thing, scene.monocell_cell.collection)
+        build_object(thing, collection)
+
+
+def objects_collection(scene: Any) -> Any:
+    """Where the cell's objects are built; made, or linked again, where a user removed it."""
+    stored = scene.monocell_cell
+    if stored.collection is None:
+        stored.collection = bpy.data.collections.new("Cell objects")
+    if stored.collection not in scene.collection.children_recursive:
+        scene.collection.children.link(stored.collection)
+    return stored.collection
 
 
 def _fill_sightings(stored: Any, cell: Cell, report: Report | None) -> None:
@@ -78,11 +91,11 @@ def _fill_sightings(stored: Any, cell: Cell, report: Report | None) -> None:
     for i, sighting in enumerate(cell.sightings):
         row = stored.sightings.add()
         row.picture = sighting.picture
-        row.place = ", ".join(f"{x:.2f}" for x in sighting.center_world)
+        row.place = "  ".join(f"{x:.2f}" for x in sighting.center_world)
         if report is not None:
             seen = report.sightings[i]
             row.status, row.reason = seen.status, seen.reason
-            row.residual = "" if seen.rms_pixels is None else f"{seen.rms_pixels:.2f} px"
+            row.residual = "–" if seen.rms_pixels is None else f"{seen.rms_pixels:.2f}"
 
 
 def _fill_references(stored: Any, cell: Cell) -> None:

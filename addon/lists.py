@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How the lists of the sidebar show sightings, references and objects."""
 
+from pathlib import PurePath
+
 import bpy
 
 STATUS_ICONS = {
@@ -18,12 +20,17 @@ class SightingList(bpy.types.UIList):
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_property, index):
         """One row."""
-        named = layout.split(factor=0.36, align=True)
-        name = item.picture.rpartition("/")[2]
-        named.label(text=name, icon=STATUS_ICONS[item.status])
-        row = named.split(factor=0.66, align=True)
-        row.label(text=item.place)
-        row.label(text=item.residual or item.status)
+        columns(layout, PurePath(item.picture).stem, item.place, item.residual, item)
+
+
+def columns(layout, picture, place, residual, item=None):
+    """Three columns, the same for the rows and their heading."""
+    icon = STATUS_ICONS[item.status] if item is not None else "BLANK1"
+    named = layout.split(factor=0.34, align=True)
+    named.label(text=picture, icon=icon)
+    row = named.split(factor=0.72, align=True)
+    row.label(text=place)
+    row.label(text=residual)
 
 
 class ReferenceList(bpy.types.UIList):

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..core.cell import Cell
 from ..core.errors import PickError
-from .document import read_scene
+from .document import objects_collection, read_scene
 
 
 def add_modelled(context: Any, kind: str, name: str, on: str, picks: str) -> Any:
@@ -29,7 +29,7 @@ def add_modelled(context: Any, kind: str, name: str, on: str, picks: str) -> Any
     modelled = solve_sketch(cell.camera, sketch, cell.reference(on), sigma)
     # refuses a name that is taken, before anything is built
     cell.with_objects((*cell.objects, modelled.object))
-    ob = build_object(modelled.object, scene.monocell_cell.collection)
+    ob = build_object(modelled.object, objects_collection(scene))
     for other in context.selected_objects:
         other.select_set(False)
     context.view_layer.objects.active = ob

@@ -6,7 +6,7 @@ import numpy as np
 
 from .cell_scene import camera_stands
 from .document import bare_cell, has_cell, stored_report
-from .lists import SightingList
+from .lists import SightingList, columns
 from .operators.calibrate import Calibrate
 from .operators.look_through import LookThrough
 from .operators.show_picture import ShowPicture
@@ -38,6 +38,7 @@ class CameraPanel(CellPanel, bpy.types.Panel):
 
     def _draw_sightings(self, layout, context, cell):
         stored = context.scene.monocell_cell
+        columns(layout.row(), "Ball", "centre, m", "px")
         layout.template_list(
             SightingList.bl_idname, "", stored, "sightings", stored, "sighting_index", rows=4
         )

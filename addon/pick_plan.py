@@ -19,7 +19,8 @@ from ..core.reverse_mapping import points_on_line_or_nan, points_on_plane_or_nan
 class PickPlan:
     """The clicks of one kind: `foot` on the reference in `prompts`, then one that sets the height.
 
-    More than that one make the height surer. `flat` is the known size that stands for the height while there is none yet.
+    More than that one make the height surer. `flat` is the known size that stands for the height
+    while there is none yet.
     """
 
     kind: str

@@ -17,7 +17,7 @@ class SightingRow(bpy.types.PropertyGroup):
     picture: StringProperty(name="Picture")
     place: StringProperty(name="Centre of the ball in the world, m, to a centimetre")
     status: StringProperty(name="Status")
-    residual: StringProperty(name="Residual")
+    residual: StringProperty(name="Residual, pixels rms")
     reason: StringProperty(name="Reason")
 
 

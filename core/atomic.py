@@ -17,12 +17,14 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
     """Yield a temporary path beside `path`, with its ending, that replaces it on success.
 
     On any error the temporary file goes and `path` stays as it was. Raises DocumentError when the
-    folder is missing or can't be written.
+    folder is missing or can't be written, or `path` is a folder itself.
     """
     target = Path(path)
-    if not target.parent.is_dir():
-        raise DocumentError(f"{target}: the folder {target.parent} is not there; make it first")
     try:
+        if not target.parent.is_dir():
+            raise DocumentError(f"{target}: the folder {target.parent} is not there; make it first")
+        if target.is_dir():
+            raise DocumentError(f"{target}: is a folder; give the name of a file")
         handle, name = tempfile.mkstemp(
             prefix=f".{target.stem}-", suffix=target.suffix, dir=target.parent
         )

@@ -37,9 +37,9 @@ class Intrinsics:
 
     def __post_init__(self) -> None:
         for name in ("width", "height"):
-            size = getattr(self, name)
+            size = finite(getattr(self, name), name)
             if size != int(size) or size < 1:
-                raise InvalidValue(f"{name}: expected a whole number of pixels, got {size}")
+                raise InvalidValue(f"{name}: expected a whole number of pixels, got {size:g}")
             object.__setattr__(self, name, int(size))
         for name in ("fx", "fy"):
             object.__setattr__(self, name, positive(getattr(self, name), name))

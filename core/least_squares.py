@@ -52,11 +52,7 @@ def levenberg_marquardt(
     value, (residuals, jacobian) = start, evaluate(start)
     damping = 1e-4
     for _ in range(steps):
-        normal, gradient = jacobian.T @ jacobian, jacobian.T @ residuals
-        step = -np.linalg.lstsq(normal + damping * np.diag(np.diag(normal)), gradient, rcond=None)[
-            0
-        ]
-        promised = -float(gradient @ step)
+        step, promised = _damped_step(residuals, jacobian, damping)
         cost = float(residuals @ residuals)
         if promised <= tolerance * (cost + 1e-24):
             return Minimum(value, residuals, jacobian, converged=True)
@@ -71,3 +67,14 @@ def levenberg_marquardt(
         else:
             damping *= 8.0
     return Minimum(value, residuals, jacobian, converged=False)
+
+
+def _damped_step(residuals: Array, jacobian: Array, damping: float) -> tuple[Array, float]:
+    """Marquardt's step (P,), and by how much it promises to lower the squared residuals."""
+    scale = np.linalg.norm(jacobian, axis=0)
+    scale[scale == 0] = 1.0
+    unit = jacobian / scale
+    # with unit columns, lstsq drops what is undetermined and never what is only in small units
+    normal, gradient = unit.T @ unit, unit.T @ residuals
+    step = -np.linalg.lstsq(normal + damping * np.diag(np.diag(normal)), gradient, rcond=None)[0]
+    return step / scale, -float(gradient @ step)

@@ -9,11 +9,12 @@ import cv2
 import numpy as np
 
 from .arrays import Array, Mask
-from .errors import SphereCut, SphereNotFound
+from .errors import SphereNotFound
 from .intrinsics import Intrinsics
 from .limb import LimbEdges, find_limb, sample_offsets
+from .outline_checks import LARGEST_CUT, cut_refusal, doubts_of, refuse_clutter, refuse_little
 from .pictures import Light
-from .robust import beside_runs, correlation_inflation, robust_sigma, tukey_weights
+from .robust import beside_runs, core_sigma, correlation_inflation, tukey_weights
 from .sphere import OutlineRays, Tangency, tangency
 
 MOST_POINTS, FEWEST_POINTS = 400, 48
@@ -27,11 +28,10 @@ FLOOR_PIXELS = 0.02
 # neighbouring profiles share pixels: their scatter understates the outline's error by this factor,
 # found on synthetic balls with noise of known size
 SHARED_PIXELS = 1.3
-LEAST_COVERAGE, DOUBTFUL_COVERAGE = 0.35, 0.5
-LARGEST_CUT = 0.25
 # edges belong to the outline when they lie in this band (pixels, or share of the radius: real balls
 # are not round to more than half a percent), though they were looked for in a much wider one
 BELONGS_PIXELS, BELONGS_SHARE = 0.6, 0.005
+OUT_OF_ROUND_SHARE = 0.003
 JUDGED_SHARE, JUDGED_PIXELS = 0.06, 4.0
 MOST_INDEPENDENT = 300.0
 
@@ -46,7 +46,7 @@ class SphereOutline:
     - `coverage`: share of the whole outline whose edge was found where it should be, and
       `evidence`: by how many sigmas that is more than chance
     - `cut`: share of the outline that lies outside the picture
-    - `rms_pixels` of the used residuals; `blur_pixels`: sigma of the picture's sharpness
+    - `rms_pixels` of the used residuals' normal core; `blur_pixels`: the picture's sharpness, sigma
     """
 
     centre_camera: Array
@@ -158,12 +158,20 @@ class OutlineMeter:
         spread = 2 * measured.noise**2 / measured.edges.curvatures
         return np.sqrt(spread + FLOOR_PIXELS**2)
 
+    def _scale(self, scaled: Array, sigma: Array, centre: Array) -> float:
+        """The spread of the residuals in sigmas, not below what a ball is out of round by.
+
+        Else the arc that happens to fit best would vote the rest of a real ball down.
+        """
+        out_of_round = OUT_OF_ROUND_SHARE * self._size_pixels(centre)
+        return max(core_sigma(scaled), out_of_round / float(np.median(sigma)))
+
     def _candidates(self, measured: _Measured) -> Mask:
         significant = measured.edges.gains > SIGNIFICANT_GAIN * measured.noise**2
         candidates: Mask = significant & measured.inside
         if candidates.sum() < 8:
             if measured.inside.mean() < 1 - LARGEST_CUT:
-                raise _cut_refusal(1 - float(measured.inside.mean()))
+                raise cut_refusal(1 - float(measured.inside.mean()))
             raise SphereNotFound(
                 f"only {int(candidates.sum())} of {len(candidates)} places of the outline have an "
                 "edge that stands out of the noise"
@@ -178,7 +186,7 @@ class OutlineMeter:
         for _ in range(6):
             held = tangency(outline, centre, self._radius)
             scaled = held.residual_pixels / sigma
-            weights = tukey_weights(scaled, robust_sigma(scaled)) / sigma**2
+            weights = tukey_weights(scaled, self._scale(scaled, sigma, centre)) / sigma**2
             weights = weights * ~beside_runs(weights == 0)
             root = np.sqrt(weights)
             step = np.linalg.lstsq(
@@ -197,7 +205,7 @@ class OutlineMeter:
         size, reach = self._size_pixels(centre), profiles.reach
         light = profiles.light[profiles.inside]
         if len(light) < 8:
-            raise _cut_refusal(1 - float(profiles.inside.mean()))
+            raise cut_refusal(1 - float(profiles.inside.mean()))
         left = []
         for blur in BLURS:
             edges = find_limb(light, reach, min(1.5, 0.5 * reach), float(blur), size, contrast)
@@ -234,15 +242,16 @@ class OutlineMeter:
         held = tangency(outline, centre, self._radius)
         sigma = self._sigmas(measured)[candidates]
         scaled = held.residual_pixels / sigma
-        scale = robust_sigma(scaled)
+        scale = self._scale(scaled, sigma, centre)
         used = tukey_weights(scaled, scale) > 0.1
         used &= ~beside_runs(~used)
         size = self._size_pixels(centre)
         cut = 1 - float(measured.inside.mean())
-        _refuse_little(coverage, cut)
+        refuse_little(coverage, cut)
         inflation = correlation_inflation(held.residual_pixels, used)
         sigma = sigma * scale * SHARED_PIXELS * np.sqrt(inflation)
-        rms = float(np.sqrt(np.mean(held.residual_pixels[used] ** 2)))
+        rms = core_sigma(held.residual_pixels[used])
+        refuse_clutter(evidence, rms, size)
         return SphereOutline(
             centre,
             _covariance(held, sigma, used),
@@ -256,7 +265,7 @@ class OutlineMeter:
             cut,
             rms,
             blur,
-            _doubts(coverage, cut, rms, size),
+            doubts_of(coverage, cut, rms, size),
         )
 
 
@@ -269,31 +278,3 @@ def _covariance(held: Tangency, sigma: Array, used: Mask) -> Array:
     rows = held.by_centre[used] / sigma[used, None]
     covariance: Array = np.linalg.inv(rows.T @ rows)
     return covariance
-
-
-def _cut_refusal(cut: float) -> SphereCut:
-    return SphereCut(
-        f"the ball is cut by the border: {100 * cut:.0f} % of its outline lies outside the picture "
-        f"(at most {100 * LARGEST_CUT:.0f} % may); use a picture that shows more of it"
-    )
-
-
-def _refuse_little(coverage: float, cut: float) -> None:
-    if cut > LARGEST_CUT:
-        raise _cut_refusal(cut)
-    if coverage < LEAST_COVERAGE:
-        raise SphereNotFound(
-            f"only {100 * coverage:.0f} % of the outline has an edge where a ball has one "
-            f"(at least {100 * LEAST_COVERAGE:.0f} % is needed)"
-        )
-
-
-def _doubts(coverage: float, cut: float, rms: float, size: float) -> tuple[str, ...]:
-    doubts = []
-    if coverage < DOUBTFUL_COVERAGE:
-        doubts.append(f"only {100 * coverage:.0f} % of the outline is seen")
-    if cut > 0.01:
-        doubts.append(f"the border cuts {100 * cut:.0f} % of the outline")
-    if rms > max(0.5, 0.01 * size):
-        doubts.append(f"the outline is {rms:.2f} px rms off a sphere's: is it round?")
-    return tuple(doubts)

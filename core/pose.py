@@ -51,8 +51,12 @@ class Pose:
 
     @staticmethod
     def from_matrix(matrix: ArrayLike) -> Pose:
-        """A pose from a homogeneous matrix (4, 4)."""
+        """A pose from a homogeneous matrix (4, 4). Raises InvalidValue for a transposed one."""
         m = frozen(matrix, (4, 4), "matrix")
+        if np.abs(m[3] - [0, 0, 0, 1]).max() > CLEAN_ROTATION_TOLERANCE:
+            raise InvalidValue(
+                f"matrix: the last row is {m[3].round(4).tolist()}, not 0 0 0 1; is it transposed?"
+            )
         return Pose(m[:3, :3], m[:3, 3])
 
     @staticmethod

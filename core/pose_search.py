@@ -24,6 +24,8 @@ from .sphere import OutlineRays
 ODD_MISFIT = 6.0
 # and when it is at least this far off: a ball of a robot is never placed to a micron
 ODD_PIXELS = 0.5
+# below this factor all sightings agree; leaving some out has to bring the rest this much closer
+ALL_WELL, PAYING_MISFIT = 3.0, 0.5
 # how well a rough pose from three balls predicts the others, in ball radii and share of distance
 ROUGH_ACROSS, ROUGH_DEPTH = 0.35, 0.2
 MOST_TRIPLES = 60
@@ -67,13 +69,16 @@ def fit_consistent(balls: Sequence[SeenBall]) -> ConsistentFit:
         together = _fitted(balls, everything, start_pose(balls))
     except DegeneratePositions:
         together = None
-    if together is not None and not _odd(together).any():
+    if together is not None and together.fit.misfit < ALL_WELL and not _odd(together).any():
         return together
     if len(balls) == 3:
         if together is None:
             raise NotConverged("the three balls found fit no pose together")
         return together
-    return _without_the_odd(balls)
+    best = _without_the_odd(balls)
+    # leaving sightings out has to pay: an error that all share is not mended by using fewer
+    pays = together is None or best.fit.misfit < PAYING_MISFIT * together.fit.misfit
+    return best if pays or together is None else together
 
 
 def start_pose(balls: Sequence[SeenBall]) -> Pose:

@@ -93,8 +93,11 @@ class RadialProfile:
 
     def undistorted(self, rd: Array) -> Array:
         """The exact inverse; NaN beyond what the curve reaches."""
-        r = self._newton(rd * self.ratio_roughly(rd * rd), rd)
-        r[~(rd <= self._table[1][-1] * (1 + 1e-12))] = np.nan
+        farthest = self._table[1][-1]
+        # beyond the curve Newton would run off to infinity
+        near = np.minimum(rd, farthest)
+        r = self._newton(near * self.ratio_roughly(near * near), near)
+        r[~(rd <= farthest * (1 + 1e-12))] = np.nan
         return r
 
     def _newton(self, r: Array, rd: Array) -> Array:
@@ -120,7 +123,8 @@ class RadialProfile:
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:
-        nodes = np.linspace(0.0, min(self.limit, WIDEST_PLANE_RADIUS), TABLE_NODES)
+        # at the limit itself a rational curve may have its pole
+        nodes = np.linspace(0.0, min(self.limit * (1 - 1e-9), WIDEST_PLANE_RADIUS), TABLE_NODES)
         gain, _ = self.gain_and_slope(nodes * nodes)
         return nodes, nodes * gain
 

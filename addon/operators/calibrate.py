@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Calibrate the scene's camera from its ball sightings."""
 
+from contextlib import contextmanager
 from typing import ClassVar
 
 import bpy
@@ -39,7 +40,8 @@ class Calibrate(NeedsCell, bpy.types.Operator):
         """Calibrate, then let document and Blender's camera take the pose."""
         from ...core.calibration import calibrate_cell
 
-        cell, calibration = calibrate_cell(bare_cell(context.scene))
+        with _hourglass(context.window):
+            cell, calibration = calibrate_cell(bare_cell(context.scene))
         write_scene(context.scene, cell, report_of(calibration))
         put_camera(context.scene)
         level = "INFO" if calibration.verdict == "good" else "WARNING"
@@ -49,3 +51,13 @@ class Calibrate(NeedsCell, bpy.types.Operator):
         for warning in calibration.warnings:
             self.report({"WARNING"}, warning)
         return {"FINISHED"}
+
+
+@contextmanager
+def _hourglass(window):
+    """The waiting cursor while pictures are measured, which takes seconds."""
+    window.cursor_modal_set("WAIT")
+    try:
+        yield
+    finally:
+        window.cursor_modal_restore()

@@ -60,12 +60,12 @@ def box_picks(noise=0.0):
     }
 
 
-def drum_picks():
-    """Three points of the base rim and one of the top rim, all on the side that is seen."""
+def drum_picks(tops=1):
+    """Three points of the base rim and some of the top rim, all on the side that is seen."""
     eye = POSE.inverse().translation - DRUM.world_from_object.translation
-    angles = np.arctan2(eye[1], eye[0]) + np.array([-1.1, 0.0, 1.1, 0.2])
+    angles = np.arctan2(eye[1], eye[0]) + np.array([-1.3, 0.0, 1.3, 0.2, 1.6][: 3 + tops])
     x, y = DRUM.radius * np.cos(angles), DRUM.radius * np.sin(angles)
-    z = np.array([-0.5, -0.5, -0.5, 0.5]) * DRUM.height
+    z = np.array([-0.5, -0.5, -0.5, 0.5, 0.5][: 3 + tops]) * DRUM.height
     pixels = CAMERA.project(DRUM.world_from_object.apply(np.stack([x, y, z], axis=1)))
     return {"rim": pixels[:3].tolist(), "top": pixels[3:].tolist()}
 

@@ -5,7 +5,6 @@ import json
 import os
 import shutil
 import subprocess
-from dataclasses import replace
 from pathlib import Path
 
 import bench_cell
@@ -82,7 +81,7 @@ def worked(window_blender, tmp_path_factory):
     folder = tmp_path_factory.mktemp("window")
     document = bench_cell.write_bench(folder, calibrated=False)
     draw_bench(folder / "bench.png")
-    box, drum = bench_cell.box_picks(), bench_cell.drum_picks()
+    box, drum = bench_cell.box_picks(), bench_cell.drum_picks(tops=2)
     job = {
         "document": str(document),
         "box": seen([*box["base"], box["top"][1]]),
@@ -137,12 +136,13 @@ def test_clicks_make_the_true_box(worked):
     assert np.allclose(sorted(box.size), sorted(truth.size), atol=3e-3)
     centre = box.world_from_object.translation
     assert np.allclose(centre, truth.world_from_object.translation, atol=3e-3)
-    assert replace(box, size=truth.size).covariance is not None
+    assert (np.abs(box.size_sigma()) > 0).all()
 
 
 def test_clicks_make_the_true_drum(worked):
     drum = objects_of(worked[0], "all")["cylinder"]
     truth = bench_cell.DRUM
+    assert len(drum.picks["top"]) == 2
     assert drum.radius == pytest.approx(truth.radius, abs=3e-3)
     assert drum.height == pytest.approx(truth.height, abs=6e-3)
 
@@ -181,7 +181,5 @@ def test_the_overlay_lies_on_the_picture(worked):
     rows, columns = np.round(screen.shape[0] - 1 - y).astype(int), np.round(x).astype(int)
     near = [yellow[r - 4 : r + 5, c - 4 : c + 5].any() for r, c in zip(rows, columns, strict=True)]
     assert np.mean(near) > 0.95
-    away = [
-        yellow[r - 44 : r - 36, c + 36 : c + 44].any() for r, c in zip(rows, columns, strict=True)
-    ]
-    assert np.mean(away) < 0.3
+    # and not because the screen is yellow all over
+    assert yellow.mean() < 0.02

@@ -69,11 +69,11 @@ def move(pixel):
     event("MOUSEMOVE", "NOTHING", x, y)
 
 
-def click(pixel):
+def click(pixel, **keys):
     x, y = place_of(pixel)
     event("MOUSEMOVE", "NOTHING", x, y)
     yield PAUSE
-    press("LEFTMOUSE", x, y)
+    press("LEFTMOUSE", x, y, **keys)
     yield PAUSE
 
 
@@ -154,8 +154,13 @@ def steps():
 
     in_view(bpy.ops.monocell.add_cylinder, "INVOKE_DEFAULT")
     yield PAUSE
-    for pixel in job["drum"]:
+    *most, top, last = job["drum"]
+    for pixel in most:
         yield from click(pixel)
+    # with Shift the height takes more than one point
+    yield from click(top, shift=True)
+    yield from click(last)
+    found["left_over"] |= handlers()
     yield from shot("7_all")
     save("all")
     in_view(bpy.ops.monocell.export_gltf, "EXEC_DEFAULT", filepath=str(out / "cell.glb"))
