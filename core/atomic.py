@@ -17,7 +17,7 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
     """Yield a temporary path beside `path`, with its ending, that replaces it on success.
 
     On any error the temporary file goes and `path` stays as it was. Raises DocumentError when the
-    folder is missing or can't be written, or `path` is a folder itself.
+    folder is missing, the disk refuses, or `path` is a folder itself.
     """
     target = Path(path)
     try:
@@ -37,6 +37,9 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         # mkstemp makes private files; a document has the rights any new file would have
         temporary.chmod(0o666 & ~_umask())
         temporary.replace(target)
+    except OSError as error:
+        # a full disk, or rights that changed meanwhile
+        raise DocumentError(f"{target}: can't be written ({error.strerror or error})") from error
     finally:
         temporary.unlink(missing_ok=True)
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -36,15 +36,7 @@ class Cell:
     folder: Path = Path()
 
     def __post_init__(self) -> None:
-        _refuse_twins("references", (reference.name for reference in self.references))
-        _refuse_twins("objects", (thing.name for thing in self.things))
-        known = {reference.name for reference in self.references}
-        for i, thing in enumerate(self.things):
-            if thing.on is not None and thing.on not in known:
-                listed = ", ".join(sorted(known)) or "none at all"
-                raise InvalidValue(
-                    f"objects[{i}].on: no reference is called {thing.on!r}; there is {listed}"
-                )
+        check_names(self.references, self.things)
 
     @property
     def things(self) -> tuple[Primitive | Sketch, ...]:
@@ -67,6 +59,22 @@ class Cell:
             if reference.name == name:
                 return reference
         raise InvalidValue(f"no reference is called {name!r}")
+
+
+def check_names(references: Sequence[Reference], things: Sequence[Primitive | Sketch]) -> None:
+    """Raises InvalidValue for two of one name, and for a thing on a reference that is not there.
+
+    Messages name the thing by its index, `objects[2].on`.
+    """
+    _refuse_twins("references", (reference.name for reference in references))
+    _refuse_twins("objects", (thing.name for thing in things))
+    known = {reference.name for reference in references}
+    for i, thing in enumerate(things):
+        if thing.on is not None and thing.on not in known:
+            listed = ", ".join(sorted(known)) or "none at all"
+            raise InvalidValue(
+                f"objects[{i}].on: no reference is called {thing.on!r}; there is {listed}"
+            )
 
 
 def _refuse_twins(field: str, names: Iterable[str]) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .atomic import atomic_path
-from .cell import Cell
+from .cell import Cell, Reference, check_names
 from .entries import (
     camera_entry,
     camera_from_entry,
@@ -21,7 +21,7 @@ from .entries import (
     thing_from_entry,
 )
 from .errors import DocumentError, InvalidValue
-from .fields import keyed
+from .fields import keyed, text
 from .primitives import Primitive
 from .sketch import Sketch
 
@@ -58,6 +58,11 @@ def cell_from_document(document: Any, folder: Path) -> Cell:
     things = [
         thing_from_entry(entry, f"objects[{i}]") for i, entry in enumerate(fields.items("objects"))
     ]
+    references = [
+        reference_from_entry(entry, f"references[{i}]")
+        for i, entry in enumerate(fields.items("references"))
+    ]
+    _check_names(references, things)
     return Cell(
         camera=_camera(fields.raw("camera"), folder),
         picture=fields.text("picture") if fields.has("picture") else None,
@@ -65,10 +70,7 @@ def cell_from_document(document: Any, folder: Path) -> Cell:
             sighting_from_entry(entry, f"sightings[{i}]")
             for i, entry in enumerate(fields.items("sightings"))
         ),
-        references=tuple(
-            reference_from_entry(entry, f"references[{i}]")
-            for i, entry in enumerate(fields.items("references"))
-        ),
+        references=tuple(references),
         objects=tuple(thing for thing in things if isinstance(thing, Primitive)),
         sketches=tuple(thing for thing in things if isinstance(thing, Sketch)),
         folder=folder,
@@ -92,7 +94,7 @@ def document_from_cell(cell: Cell, folder: Path) -> dict[str, Any]:
 def parse_json(file: Path) -> Any:
     """Parsed JSON. Raises DocumentError naming the file, and line and column where it breaks."""
     try:
-        return json.loads(file.read_text(encoding="utf-8-sig"))
+        return json.loads(file.read_text(encoding="utf-8-sig"), object_pairs_hook=_once_each)
     except FileNotFoundError:
         raise DocumentError(f"{file}: there is no such file") from None
     except OSError as error:
@@ -104,11 +106,34 @@ def parse_json(file: Path) -> Any:
         raise DocumentError(f"{file}: is not JSON ({error.msg} at {at})") from None
     except RecursionError:
         raise DocumentError(f"{file}: is nested too deeply to be a cell document") from None
+    except DocumentError as error:
+        raise DocumentError(f"{file}: {error}") from None
+    except ValueError as error:
+        # a whole number of thousands of digits
+        raise DocumentError(f"{file}: is not JSON that can be read ({error})") from None
 
 
 def dumped(document: Any) -> str:
     """JSON a person can read: one line a number list, shortest digits that read back exactly."""
     return _laid_out(document, 0) + "\n"
+
+
+def _once_each(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A JSON object's keys; JSON would silently take the last of two equal ones."""
+    value = dict(pairs)
+    if len(value) < len(pairs):
+        keys = [key for key, _ in pairs]
+        twice = next(key for key in keys if keys.count(key) > 1)
+        raise DocumentError(f"{twice}: stands there twice; leave one of them")
+    return value
+
+
+def _check_names(references: list[Reference], things: list[Primitive | Sketch]) -> None:
+    """Here things still stand in the document's order, which messages count by."""
+    try:
+        check_names(references, things)
+    except InvalidValue as error:
+        raise DocumentError(str(error)) from None
 
 
 def _camera(value: Any, folder: Path) -> Any:
@@ -117,7 +142,7 @@ def _camera(value: Any, folder: Path) -> Any:
     # imported here: the formats of others bring OpenCV and YAML, which most documents do not need
     from .camera_file import read_camera
 
-    return read_camera(folder / value)
+    return read_camera(folder / text(value, "camera"))
 
 
 def _moved(name: str, old_folder: Path, new_folder: Path) -> str:

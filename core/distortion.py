@@ -79,7 +79,9 @@ class Distortion:
         if self.model == "equidistant":
             return self._fisheye_rays(d)
         plain = self.model == "none"
-        x, y = (d[:, 0], d[:, 1]) if plain else self._undistort_polynomial(d)
+        # where no ray is imaged Newton's method runs off to infinity, and NaN is the answer
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            x, y = (d[:, 0], d[:, 1]) if plain else self._undistort_polynomial(d)
         rays = np.empty((len(d), 3))
         rays[:, 2] = 1.0 / np.sqrt(x * x + y * y + 1.0)
         np.multiply(x, rays[:, 2], out=rays[:, 0])

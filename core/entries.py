@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .appearance import Appearance
-from .arrays import Array
+from .arrays import Array, positive
 from .camera import Camera
 from .cell import Reference
 from .distortion import Distortion
@@ -132,7 +132,8 @@ def object_entry(thing: Primitive | Sketch, *, with_picks: bool = True) -> Entry
             entry["covariance"] = thing.covariance.tolist()
     if thing.known:
         entry["known"] = dict(thing.known)
-    if with_picks and thing.picks:
+    # a sketch is nothing without its picks, even while there are none yet
+    if with_picks and (thing.picks or isinstance(thing, Sketch)):
         entry["picks"] = {role: _plain(pixels) for role, pixels in thing.picks.items()}
     if thing.appearance is not None:
         entry["appearance"] = {"color": thing.appearance.color.tolist()}
@@ -153,7 +154,7 @@ def thing_from_entry(entry: Any, where: str) -> Primitive | Sketch:
     """An object, or a sketch where `world_from_object` is absent."""
     common = ("on", "picks", "known", "appearance")
     kind = entry.get("kind") if isinstance(entry, dict) else None
-    if isinstance(entry, dict) and kind not in KINDS:
+    if isinstance(entry, dict) and not (isinstance(kind, str) and kind in KINDS):
         got = f"{shown(kind)} is none of {', '.join(KINDS)}" if "kind" in entry else "is missing"
         raise DocumentError(f"{where}.kind: {got}")
     sizes = ("size",) if kind == "box" else ("radius", "height")
@@ -205,7 +206,8 @@ def _distortion(fields: Fields) -> Distortion:
     inner = keyed(fields.raw("distortion"), where, ("model",), ("coefficients",))
     listed = inner.items("coefficients")
     values = [number(v, f"{where}.coefficients[{i}]") for i, v in enumerate(listed)]
-    return Distortion(inner.text("model"), np.array(values))
+    with _named(fields.where):
+        return Distortion(inner.text("model"), np.array(values))
 
 
 def _covariance(fields: Fields, size: int) -> Array | None:
@@ -217,7 +219,11 @@ def _known(fields: Fields) -> dict[str, float]:
         return {}
     kind = KINDS[fields.text("kind")]
     known = keyed(fields.raw("known"), fields.path("known"), (), kind.size_names)
-    return {name: known.number(name) for name in kind.size_names if known.has(name)}
+    return {
+        name: positive(known.number(name), known.path(name))
+        for name in kind.size_names
+        if known.has(name)
+    }
 
 
 def _appearance(fields: Fields) -> Appearance | None:
@@ -257,4 +263,5 @@ def _named(where: str) -> Iterator[None]:
     try:
         yield
     except InvalidValue as error:
-        raise DocumentError(f"{where}: {error}") from None
+        told = str(error)
+        raise DocumentError(told if told.startswith(where) else f"{where}: {told}") from None

@@ -100,9 +100,13 @@ def number(value: Any, where: str) -> float:
     """A finite number; true and false are none. Raises DocumentError."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise DocumentError(f"{where}: expected a number, got {shown(value)}")
-    if not math.isfinite(value):
+    try:
+        as_float = float(value)
+    except OverflowError:
+        raise DocumentError(f"{where}: expected a number, got {shown(value)}") from None
+    if not math.isfinite(as_float):
         raise DocumentError(f"{where}: expected a finite number, got {value}")
-    return float(value)
+    return as_float
 
 
 def items(value: Any, where: str) -> list[Any]:

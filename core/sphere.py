@@ -29,7 +29,8 @@ def sphere_from_rays(rays: ArrayLike, radius: float, weights: ArrayLike | None =
     scale = np.ones(len(u)) if weights is None else np.asarray(weights, dtype=float)
     w = np.linalg.lstsq(u * scale[:, None], scale, rcond=None)[0]
     excess = float(w @ w) - 1.0
-    if not excess > 0:
+    # rays all in one give |w| = 1 to the last digit, and a ball beyond the moon
+    if not excess > 1e-12:
         raise SphereNotFound(
             f"the {len(u)} rays bend away from a sphere (|w|^2 - 1 = {excess:.2g}): "
             "no outline of a ball"

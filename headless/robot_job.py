@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..core.arrays import Array
-from .told import table
+from .told import pairs
 
 if TYPE_CHECKING:
     from .robot.demo_motion import BlockedMotion
@@ -56,7 +56,7 @@ def told(motion: BlockedMotion, plan: Plan) -> str:
         ("minimum clearance", "nothing near" if nearest is None else str(nearest.gap)),
         ("checked again", f"{plan.walk.poses} poses, free: {'yes' if plan.walk.free else 'NO'}"),
     ]
-    return table(("robot", ""), rows)
+    return pairs(rows)
 
 
 def document(motion: BlockedMotion, plan: Plan) -> dict[str, Any]:

@@ -20,7 +20,7 @@ def test_the_new_file_takes_the_place_of_the_old_one(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["cell.json"]
 
 
-@pytest.mark.parametrize("failure", [RuntimeError, KeyboardInterrupt, OSError, SystemExit])
+@pytest.mark.parametrize("failure", [RuntimeError, KeyboardInterrupt, SystemExit])
 def test_a_failure_midway_leaves_the_old_file_as_it_was_and_nothing_beside_it(tmp_path, failure):
     path = tmp_path / "cell.json"
     path.write_bytes(b"old\r\n\xff")
@@ -30,6 +30,18 @@ def test_a_failure_midway_leaves_the_old_file_as_it_was_and_nothing_beside_it(tm
         raise failure
     assert path.read_bytes() == b"old\r\n\xff"
     assert path.stat().st_mtime_ns == before.st_mtime_ns
+    assert [p.name for p in tmp_path.iterdir()] == ["cell.json"]
+
+
+def test_a_disk_that_fills_up_midway_is_told_as_such(tmp_path):
+    path = tmp_path / "cell.json"
+    path.write_text("old")
+    with (
+        pytest.raises(DocumentError, match=r"can't be written \(No space left on device\)"),
+        atomic_path(path),
+    ):
+        raise OSError(28, "No space left on device")
+    assert path.read_text() == "old"
     assert [p.name for p in tmp_path.iterdir()] == ["cell.json"]
 
 

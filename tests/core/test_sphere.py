@@ -92,7 +92,7 @@ def test_one_ray_three_times_is_no_outline():
 
 
 def test_a_camera_inside_the_ball_sees_no_outline():
-    with pytest.raises(SphereNotFound, match="inside the ball: 0.03 m from its centre"):
+    with pytest.raises(SphereNotFound, match=r"inside the ball: 0\.03 m from its centre"):
         outline_rays([0, 0, 0.03], 0.04, [0.0])
 
 
