@@ -96,7 +96,8 @@ class PickSession:
         """Where a click would hit the reference, in metres; nothing while the height is set."""
         if len(self.pixels) >= self.plan.foot_clicks:
             return ""
-        x, y, z = points_on_plane(self.camera, self.plane, pixel[None])[0]
+        # adding nought turns -0.000 into 0.000
+        x, y, z = np.round(points_on_plane(self.camera, self.plane, pixel[None])[0], 3) + 0.0
         return f"x {x:.3f}   y {y:.3f}   z {z:.3f} m"
 
     def _chain(self) -> tuple[Polyline, ...]:

@@ -26,6 +26,8 @@ ROS_MODELS = {
     "equidistant": "equidistant",
     "fisheye": "equidistant",
 }
+MATRIX_NAMES = ("camera_matrix", "Camera_Matrix", "cameraMatrix", "K")
+COEFFICIENT_NAMES = ("distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "D")
 FORMS = "monocell JSON, ROS camera_info YAML or OpenCV FileStorage (.yml, .xml, .json)"
 
 
@@ -47,11 +49,15 @@ def read_camera(path: str | Path) -> Camera:
 
 def _from_json(file: Path) -> Camera:
     document = parse_json(file)
-    if isinstance(document, dict) and "opencv_storage" in _beginning(file):
+    if isinstance(document, dict) and any(_is_opencv_matrix(v) for v in document.values()):
         return _from_opencv(file)
     if isinstance(document, dict) and "monocell" in document:
         return camera_from_entry(document.get("camera"))
     return camera_from_entry(document, "")
+
+
+def _is_opencv_matrix(value: Any) -> bool:
+    return isinstance(value, dict) and value.get("type_id") == "opencv-matrix"
 
 
 def _beginning(file: Path) -> str:
@@ -91,10 +97,14 @@ def _ros_distortion(fields: Fields) -> Distortion:
     if not fields.has("distortion_coefficients"):
         return Distortion()
     name = fields.text("distortion_model") if fields.has("distortion_model") else "plumb_bob"
+    return _padded(_ros_model(name), _ros_array(fields, "distortion_coefficients", None))
+
+
+def _ros_model(name: str) -> str:
     if name not in ROS_MODELS:
         known = ", ".join(ROS_MODELS)
         raise DocumentError(f"distortion_model: {name!r} is none of {known}")
-    return _padded(ROS_MODELS[name], _ros_array(fields, "distortion_coefficients", None))
+    return ROS_MODELS[name]
 
 
 def _ros_array(fields: Fields, key: str, length: int | None) -> Array:
@@ -110,33 +120,32 @@ def _ros_array(fields: Fields, key: str, length: int | None) -> Array:
 
 def _from_opencv(file: Path) -> Camera:
     """OpenCV FileStorage with the usual names: camera_matrix, distortion_coefficients, ..."""
+    storage = _opened(file)
+    sizes = [_node(storage, name) for name in ("image_width", "image_height")]
+    matrix = _node(storage, *MATRIX_NAMES)
+    if matrix is None or any(node is None for node in sizes):
+        raise DocumentError("needs image_width, image_height and camera_matrix")
+    width, height = (_opencv_whole(node) for node in sizes)
+    k = _opencv_array(matrix)
+    if k.shape != (3, 3):
+        raise DocumentError(f"{matrix.name()}: must be 3 x 3, got {k.shape}")
+    coefficients = _node(storage, *COEFFICIENT_NAMES)
+    if coefficients is None:
+        return Camera(_intrinsics(width, height, k, Distortion()))
+    values = _opencv_array(coefficients).ravel()
+    model = _opencv_model(_node(storage, "distortion_model"), values)
+    return Camera(_intrinsics(width, height, k, _padded(model, values)))
+
+
+def _opened(file: Path) -> Any:
     import cv2
 
     try:
-        storage = cv2.FileStorage(str(file), cv2.FILE_STORAGE_READ)
-    except cv2.error as error:
-        reason = " ".join(str(error).split())[:120]
-        raise DocumentError(f"{file}: OpenCV can't read it ({reason})") from None
-    with_size = [_node(storage, *names) for names in (("image_width",), ("image_height",))]
-    matrix = _node(storage, "camera_matrix", "Camera_Matrix", "cameraMatrix", "K")
-    if matrix is None or any(node is None for node in with_size):
-        raise DocumentError(f"{file}: needs image_width, image_height and camera_matrix")
-    width, height = (int(node.real()) for node in with_size)
-    k = np.asarray(matrix.mat(), dtype=float)
-    if k.shape != (3, 3):
-        raise DocumentError(f"{file}: camera_matrix must be 3 x 3, got {k.shape}")
-    distortion = Distortion()
-    coefficients = _node(
-        storage, "distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "D"
-    )
-    if coefficients is not None:
-        values = np.asarray(coefficients.mat(), dtype=float).ravel()
-        model = _node(storage, "distortion_model")
-        name = model.string() if model is not None else _opencv_model(values)
-        if name not in ROS_MODELS:
-            raise DocumentError(f"{file}: distortion_model {name!r} is none of {list(ROS_MODELS)}")
-        distortion = _padded(ROS_MODELS[name], values)
-    return Camera(_intrinsics(width, height, k, distortion))
+        return cv2.FileStorage(str(file), cv2.FILE_STORAGE_READ)
+    except (cv2.error, SystemError) as error:
+        # the binding wraps OpenCV's own error, which ends in `file.yml(3): what is wrong`
+        reason = " ".join(str(error.__cause__ or error).split()).rsplit("/", 1)[-1]
+        raise DocumentError(f"OpenCV can't read it ({reason.rstrip(chr(39))[:120]})") from None
 
 
 def _node(storage: Any, *names: str) -> Any:
@@ -144,8 +153,24 @@ def _node(storage: Any, *names: str) -> Any:
     return next((node for node in found if not node.empty()), None)
 
 
-def _opencv_model(values: Array) -> str:
-    return "plumb_bob" if len(values) <= 5 else "rational_polynomial"
+def _opencv_whole(node: Any) -> int:
+    value = node.real() if node.isInt() or node.isReal() else node.string()
+    return Fields({node.name(): value}, "").whole(node.name())
+
+
+def _opencv_array(node: Any) -> Array:
+    import cv2
+
+    try:
+        return np.asarray(node.mat(), dtype=float)
+    except (cv2.error, SystemError, TypeError):
+        raise DocumentError(f"{node.name()}: expected a matrix of numbers") from None
+
+
+def _opencv_model(node: Any, values: Array) -> str:
+    if node is None:
+        return "plumb_bob" if len(values) <= 5 else "rational_polynomial"
+    return _ros_model(node.string() if node.isString() else "")
 
 
 def _padded(model: str, values: Array) -> Distortion:

@@ -10,6 +10,7 @@ import numpy as np
 from .arrays import Array
 from .camera import Camera
 from .cell import Cell
+from .covariance import inverse_information
 from .errors import InvalidValue
 from .pose import Pose
 from .primitives import Box, Primitive
@@ -20,7 +21,8 @@ class PoseError:
     """Of a camera: centre (3,) in world axes, metres, and rotation (3,) about the camera's axes.
 
     Sigmas are those the estimate states, None where it states none. `mahalanobis` is the error in
-    stated sigmas over all six numbers; its square is chi-squared with 6 degrees of freedom.
+    stated sigmas over all six numbers; its square is chi-squared with 6 degrees of freedom. It is
+    None where some direction is stated to be exact.
     """
 
     centre: Array
@@ -75,15 +77,15 @@ def compare_cells(truth: Cell, estimate: Cell) -> Comparison:
 def pose_error(truth: Camera, estimate: Camera) -> PoseError:
     """Estimate minus truth. Raises NoPose when a camera has none."""
     twist = _twist(estimate.pose @ truth.pose.inverse())
-    mahalanobis = None
+    information = None
     if estimate.covariance is not None:
-        mahalanobis = float(np.sqrt(twist @ np.linalg.solve(estimate.covariance, twist)))
+        information = inverse_information(estimate.covariance)
     return PoseError(
         estimate.centre_world - truth.centre_world,
         estimate.centre_sigma(),
         twist[:3],
         estimate.rotation_sigma(),
-        mahalanobis,
+        None if information is None else float(np.sqrt(twist @ information @ twist)),
     )
 
 

@@ -20,6 +20,8 @@ Window = tuple[float, float, float, float]
 SEARCHED, SEARCHED_IN_WINDOW, NARROWED, MEASURED = 24, 8, 5, 4
 # an outline this clear ends the search: what is left had less agreement already
 CLEAR_EVIDENCE, CLEAR_COVERAGE = 8.0, 0.45
+# in a window the strongest circles are tried before all are compared
+TRIED_AT_ONCE, CLEAR_AGREEMENT = 2, 0.6
 LEAST_AGREEMENT, SHARE_BY_CHANCE = 0.33, 0.25
 INDEPENDENT_EDGES = 300
 # around the rough outline, as a share of its radius and in pixels, what the fine measurement sees
@@ -57,8 +59,13 @@ def _found(
         Circle(c.u + left, c.v + top, c.radius, c.support)
         for c in vote_for_circles(crop, largest=_largest(window, intrinsics))
     ]
+    pyramid = Pyramid(coded)
+    if until_clear and window is not None:
+        clear = _first_clear(picture, pyramid, intrinsics, circles[:TRIED_AT_ONCE], radius)
+        if clear is not None:
+            return (clear,)
     most = SEARCHED if window is None else SEARCHED_IN_WINDOW
-    roughs = _roughs(Pyramid(coded), intrinsics, circles[:most], radius)
+    roughs = _roughs(pyramid, intrinsics, circles[:most], radius)
     return _measured(picture, intrinsics, radius, roughs, _where(window), until_clear)
 
 
@@ -87,6 +94,33 @@ def measure_sphere(
     light = linear_light(np.ascontiguousarray(picture[top : top + height, left : left + width]))
     meter = OutlineMeter(light, np.array([left, top], dtype=float), intrinsics, radius)
     return meter.measure(rough_centre_camera)
+
+
+def _first_clear(
+    picture: Picture,
+    pyramid: Pyramid,
+    intrinsics: Intrinsics,
+    circles: list[Circle],
+    radius: float,
+) -> SphereOutline | None:
+    """The first circle that turns out to be a clear ball at once, as in a good window it does."""
+    for circle in circles:
+        try:
+            wide = search_ring(pyramid, intrinsics, circle, radius, WIDE)
+            better = circle_of(intrinsics, wide.centre_camera, radius)
+            rough = search_ring(pyramid, intrinsics, better, radius, NARROW)
+            if rough.agreement < CLEAR_AGREEMENT:
+                continue
+            outline = measure_sphere(picture, intrinsics, radius, rough.centre_camera)
+        except SphereNotFound:
+            continue
+        if _is_clear(outline):
+            return outline
+    return None
+
+
+def _is_clear(outline: SphereOutline) -> bool:
+    return outline.evidence > CLEAR_EVIDENCE and outline.coverage > CLEAR_COVERAGE
 
 
 def _roughs(
@@ -137,8 +171,7 @@ def _measured(
             continue
         if not any(_same(outline.centre_camera, o.centre_camera, radius) for o in outlines):
             outlines.append(outline)
-        clear = outline.evidence > CLEAR_EVIDENCE and outline.coverage > CLEAR_COVERAGE
-        if until_clear and clear:
+        if until_clear and _is_clear(outline):
             break
     if outlines:
         return tuple(sorted(outlines, key=lambda o: o.evidence, reverse=True))

@@ -4,23 +4,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import cv2
 import numpy as np
 
 from .arrays import Array, Mask
+from .downhill import lowest
 from .errors import SphereNotFound
 from .intrinsics import Intrinsics
 from .limb import LimbEdges, find_limb, sample_offsets
 from .outline_checks import LARGEST_CUT, cut_refusal, doubts_of, refuse_clutter, refuse_little
 from .pictures import Light
-from .robust import beside_runs, core_sigma, correlation_inflation, tukey_weights
+from .robust import beside_runs, core_sigma, correlation_inflation, middle_of, tukey_weights
 from .sphere import OutlineRays, Tangency, tangency
 
 MOST_POINTS, FEWEST_POINTS = 400, 48
-BLURS = np.array([0.4, 0.53, 0.7, 0.93, 1.25, 1.7, 2.3, 3.1])
-SHARPNESS_POINTS = 120
-FIRST_BLUR = 0.8
+BLURS = (0.4, 0.53, 0.7, 0.93, 1.25, 1.7, 2.3, 3.1)
+SHARPNESS_POINTS = 80
+FIRST_SEARCH, FIRST_BLUR, FIRST_POINTS, LARGE = 4.0, 0.7, 96, 60.0
 # an edge has to explain its profile this much better than no edge, in units of the noise
 SIGNIFICANT_GAIN = 25.0
 # what a perfect edge is still uncertain by: sampling, the model of the limb
@@ -31,7 +33,10 @@ SHARED_PIXELS = 1.3
 # edges belong to the outline when they lie in this band (pixels, or share of the radius: real balls
 # are not round to more than half a percent), though they were looked for in a much wider one
 BELONGS_PIXELS, BELONGS_SHARE = 0.6, 0.005
+FINE_SEARCH = 1.75
 OUT_OF_ROUND_SHARE = 0.003
+# a step this small, as a share of the distance, is a hundredth of an outline's own error
+SETTLED = 1e-6
 JUDGED_SHARE, JUDGED_PIXELS = 0.06, 4.0
 MOST_INDEPENDENT = 300.0
 
@@ -99,18 +104,20 @@ class OutlineMeter:
         SphereCut when too much of it lies outside the picture.
         """
         centre, contrast = rough_centre, 0.1
-        for search in (4.0, 2.5):
-            measured = self._pass(centre, search, FIRST_BLUR, contrast)
+        # what is found at a large ball's scale is off by more pixels: look twice
+        for _ in range(2 if self._size_pixels(centre) > LARGE else 1):
+            measured = self._pass(centre, FIRST_SEARCH, FIRST_BLUR, contrast, FIRST_POINTS)
             centre, contrast = self._fitted(centre, measured), _noise_to_contrast(measured)
         blur = self._sharpness(centre, contrast)
-        for search in (2.0, 1.5):
-            measured = self._pass(centre, search, blur, contrast)
-            centre, contrast = self._fitted(centre, measured), _noise_to_contrast(measured)
+        measured = self._pass(centre, FINE_SEARCH, blur, contrast)
+        centre, contrast = self._fitted(centre, measured), _noise_to_contrast(measured)
         coverage, evidence = self._coverage(centre, blur, contrast)
         return self._judged(centre, measured, blur, coverage, evidence)
 
-    def _pass(self, centre: Array, search: float, blur: float, contrast: float) -> _Measured:
-        profiles = self._profiles(centre, max(4.0, 2.5 * blur + 2.0, search + 2.5))
+    def _pass(
+        self, centre: Array, search: float, blur: float, contrast: float, most: int = MOST_POINTS
+    ) -> _Measured:
+        profiles = self._profiles(centre, max(4.0, 2.5 * blur + 2.0, search + 2.5), most)
         edges = find_limb(
             profiles.light,
             profiles.reach,
@@ -121,7 +128,7 @@ class OutlineMeter:
         )
         _, samples, channels = profiles.light.shape
         freedom = max(1, (samples - 4) * channels - 1)
-        noise = float(np.sqrt(max(float(np.median(edges.misfits)) / freedom, 1e-12)))
+        noise = float(np.sqrt(max(middle_of(edges.misfits) / freedom, 1e-12)))
         outline = profiles.places.moved(profiles.normals, edges.offsets_pixels)
         return _Measured(outline, edges, noise, profiles.inside)
 
@@ -158,13 +165,12 @@ class OutlineMeter:
         spread = 2 * measured.noise**2 / measured.edges.curvatures
         return np.sqrt(spread + FLOOR_PIXELS**2)
 
-    def _scale(self, scaled: Array, sigma: Array, centre: Array) -> float:
-        """The spread of the residuals in sigmas, not below what a ball is out of round by.
+    def _out_of_round(self, sigma: Array, centre: Array) -> float:
+        """What a ball is out of round by, in sigmas: the least spread that is believed.
 
         Else the arc that happens to fit best would vote the rest of a real ball down.
         """
-        out_of_round = OUT_OF_ROUND_SHARE * self._size_pixels(centre)
-        return max(core_sigma(scaled), out_of_round / float(np.median(sigma)))
+        return OUT_OF_ROUND_SHARE * self._size_pixels(centre) / middle_of(sigma)
 
     def _candidates(self, measured: _Measured) -> Mask:
         significant = measured.edges.gains > SIGNIFICANT_GAIN * measured.noise**2
@@ -183,10 +189,11 @@ class OutlineMeter:
         candidates = self._candidates(measured)
         outline = measured.outline.chosen(candidates)
         sigma = self._sigmas(measured)[candidates]
+        least = self._out_of_round(sigma, centre)
         for _ in range(6):
             held = tangency(outline, centre, self._radius)
             scaled = held.residual_pixels / sigma
-            weights = tukey_weights(scaled, self._scale(scaled, sigma, centre)) / sigma**2
+            weights = tukey_weights(scaled, max(core_sigma(scaled), least)) / sigma**2
             weights = weights * ~beside_runs(weights == 0)
             root = np.sqrt(weights)
             step = np.linalg.lstsq(
@@ -195,7 +202,7 @@ class OutlineMeter:
             centre = centre - step
             if not np.isfinite(centre).all() or np.linalg.norm(centre) < 1.01 * self._radius:
                 raise SphereNotFound("the edges around the guess form no outline of a ball")
-            if np.linalg.norm(step) < 1e-7 * np.linalg.norm(centre):
+            if np.linalg.norm(step) < SETTLED * np.linalg.norm(centre):
                 break
         return centre
 
@@ -206,16 +213,20 @@ class OutlineMeter:
         light = profiles.light[profiles.inside]
         if len(light) < 8:
             raise cut_refusal(1 - float(profiles.inside.mean()))
-        left = []
-        for blur in BLURS:
-            edges = find_limb(light, reach, min(1.5, 0.5 * reach), float(blur), size, contrast)
+
+        @cache
+        def left(i: int) -> float:
+            edges = find_limb(light, reach, min(1.5, 0.5 * reach), BLURS[i], size, contrast)
             # the worst profiles cross a finger or a texture and tell nothing of the sharpness
             kept = np.sort(edges.misfits)
-            left.append(kept[: max(6, int(0.6 * len(kept)))].mean())
-        i = int(np.clip(np.argmin(left), 1, len(BLURS) - 2))
-        a, b, _ = np.polyfit(np.log(BLURS[i - 1 : i + 2]), left[i - 1 : i + 2], 2)
-        best = np.exp(-b / (2 * a)) if a > 0 else BLURS[np.argmin(left)]
-        return float(np.clip(best, BLURS[i - 1], BLURS[i + 1]))
+            return float(kept[: max(6, int(0.6 * len(kept)))].mean())
+
+        best = lowest(left, BLURS.index(FIRST_BLUR), len(BLURS))
+        i = min(max(best, 1), len(BLURS) - 2)
+        logs = np.log(BLURS[i - 1 : i + 2])
+        bend, slope, _ = np.polyfit(logs, [left(i - 1), left(i), left(i + 1)], 2)
+        between = float(np.exp(-slope / (2 * bend))) if bend > 0 else BLURS[best]
+        return min(max(between, BLURS[i - 1]), BLURS[i + 1])
 
     def _coverage(self, centre: Array, blur: float, contrast: float) -> tuple[float, float]:
         """The share of the outline whose strongest edge, looked for far around, lies on it.
@@ -242,7 +253,7 @@ class OutlineMeter:
         held = tangency(outline, centre, self._radius)
         sigma = self._sigmas(measured)[candidates]
         scaled = held.residual_pixels / sigma
-        scale = self._scale(scaled, sigma, centre)
+        scale = max(core_sigma(scaled), self._out_of_round(sigma, centre))
         used = tukey_weights(scaled, scale) > 0.1
         used &= ~beside_runs(~used)
         size = self._size_pixels(centre)
@@ -270,7 +281,7 @@ class OutlineMeter:
 
 
 def _noise_to_contrast(measured: _Measured) -> float:
-    contrast = np.sqrt(np.median(measured.edges.gains) / 10)
+    contrast = np.sqrt(middle_of(measured.edges.gains) / 10)
     return float(measured.noise / max(contrast, 1e-6))
 
 

@@ -97,7 +97,7 @@ class OutlineRays:
         """
         shift = along * by_pixels[:, None]
         rays = self.rays + np.einsum("nij,nj->ni", self.rays_by_pixel, shift)
-        rays = rays / np.linalg.norm(rays, axis=1, keepdims=True)
+        rays = rays / _lengths(rays)[:, None]
         return OutlineRays(self.pixels + shift, rays, self.rays_by_pixel)
 
     def chosen(self, which: Mask) -> OutlineRays:
@@ -134,14 +134,13 @@ def tangency(outline: OutlineRays, centre_camera: ArrayLike, radius: float) -> T
     rays = outline.rays
     along = rays @ axis
     across = rays - along[:, None] * axis
-    off_axis = np.maximum(np.linalg.norm(across, axis=1), 1e-12)
+    off_axis = np.maximum(_lengths(across), 1e-12)
     outwards = across / off_axis[:, None]
     angle = np.arctan2(off_axis, along) - np.arcsin(sine)
     # the angle grows along the direction that turns the ray away from the axis
     turning = along[:, None] * outwards - off_axis[:, None] * axis
     gradient = np.einsum("ni,nij->nj", turning, outline.rays_by_pixel)
-    steepness = np.linalg.norm(gradient, axis=1)
-    per_pixel = 1.0 / steepness
+    per_pixel = 1.0 / _lengths(gradient)
     by_centre = (axis * (sine / cosine) - outwards) * (per_pixel / distance)[:, None]
     by_radius = -per_pixel / (distance * cosine)
     return Tangency(angle * per_pixel, by_centre, by_radius, gradient * per_pixel[:, None])
@@ -165,8 +164,14 @@ def sphere_at(
 
 def _across(axis: Array) -> tuple[Array, Array]:
     """Two unit vectors across `axis` that show as right and down in the picture."""
-    right = np.cross([0.0, 1.0, 0.0], axis)
-    if np.linalg.norm(right) < 1e-6:
-        right = np.cross([0.0, 0.0, 1.0], axis)
-    right /= np.linalg.norm(right)
-    return right, np.cross(axis, right)
+    x, y, z = axis.tolist()
+    # down cross axis, or forward cross axis where the axis itself points down
+    right = np.array([z, 0.0, -x]) if x * x + z * z > 1e-12 else np.array([-y, x, 0.0])
+    right /= float(np.sqrt(right @ right))
+    a, b, c = right.tolist()
+    return right, np.array([y * c - z * b, z * a - x * c, x * b - y * a])
+
+
+def _lengths(vectors: Array) -> Array:
+    lengths: Array = np.sqrt(np.einsum("ni,ni->n", vectors, vectors))
+    return lengths

@@ -37,13 +37,13 @@ def ros(model="plumb_bob", coefficients=BROWN, k=K, **changed):
     return "".join(f"{key}: {value}\n" for key, value in fields.items() if value is not None)
 
 
-def opencv(path, model="plumb_bob", coefficients=BROWN, **names):
+def opencv(path, model="plumb_bob", values=BROWN, **names):
     storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_WRITE)
     storage.write("image_width", 1280)
     storage.write("image_height", 960)
     storage.write(names.get("matrix", "camera_matrix"), np.array(K).reshape(3, 3))
-    if coefficients is not None:
-        storage.write(names.get("coefficients", "distortion_coefficients"), np.array(coefficients))
+    if values is not None:
+        storage.write(names.get("coefficients", "distortion_coefficients"), np.array(values))
     if model is not None:
         storage.write("distortion_model", model)
     storage.release()
