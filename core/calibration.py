@@ -23,7 +23,6 @@ from .pose_search import ConsistentFit, SeenBall, fit_consistent
 from .position_geometry import PositionGeometry, check_positions
 from .sighting import SphereSighting
 from .sighting_report import SightingReport, robust_rms, sighting_reports
-from .sphere import OutlineRays
 
 METHODS = ("joint", "frames")
 Method = Literal["joint", "frames"]
@@ -97,7 +96,12 @@ def _calibrated(
         except SphereNotFound as error:
             outlines.append(None)
             failures[i] = str(error)
-    calibration, pose = _solve(cell.camera, cell.sightings, outlines, failures, method)
+    try:
+        calibration, pose = _solve(cell.camera, cell.sightings, outlines, failures, method)
+    except NotConverged:
+        calibration, pose = _solved_by_choice(cell, pictures, outlines, failures, method)
+    if calibration.verdict == "failed":
+        calibration, pose = _solved_by_choice(cell, pictures, outlines, failures, method)
     again = _looked_for_again(calibration, pose, cell.sightings, pictures, intrinsics)
     if again:
         for i, outline in again.items():
@@ -105,6 +109,41 @@ def _calibrated(
             failures.pop(i, None)
         calibration, _ = _solve(cell.camera, cell.sightings, outlines, failures, method)
     return cell.with_camera(calibration.camera), calibration
+
+
+def _solved_by_choice(
+    cell: Cell,
+    pictures: dict[str, Picture],
+    outlines: list[SphereOutline | None],
+    failures: dict[int, str],
+    method: Method,
+) -> tuple[Calibration, Pose]:
+    """Solve with those of all candidates that fit together, where the best of each did not.
+
+    What is chosen takes the place of what was found, unless too little fits.
+    """
+    from .candidate_choice import choose_candidates
+    from .find import find_spheres
+
+    candidates: list[tuple[SphereOutline, ...]] = []
+    for sighting in cell.sightings:
+        try:
+            picture = pictures[sighting.picture]
+            candidates.append(
+                find_spheres(picture, cell.camera.intrinsics, sighting.radius, sighting.window)
+            )
+        except SphereNotFound:
+            candidates.append(())
+    places = np.array([sighting.center_world for sighting in cell.sightings])
+    chosen = choose_candidates(places, candidates)
+    if sum(outline is not None for outline in chosen) >= 3:
+        outlines[:] = chosen
+        for i, outline in enumerate(chosen):
+            if outline is None:
+                failures.setdefault(i, "what was found does not fit the others")
+            else:
+                failures.pop(i, None)
+    return _solve(cell.camera, cell.sightings, outlines, failures, method)
 
 
 def _read(cell: Cell, picture: str) -> Picture:
@@ -150,7 +189,11 @@ def _solve(
     if len(found) < 3:
         _refuse_too_few_found(sightings, failures, len(found))
     check_positions([sightings[i].center_world for i in found])
-    balls = [_seen(camera.intrinsics, sightings[i], outlines[i]) for i in found]
+    balls = [
+        SeenBall.of(sighting.center_world, outline, camera.intrinsics)
+        for sighting, outline in zip(sightings, outlines, strict=True)
+        if outline is not None
+    ]
     consistent = fit_consistent(balls)
     geometry = check_positions(
         [ball.centre_world for ball, use in zip(balls, consistent.used, strict=True) if use]
@@ -163,14 +206,6 @@ def _solve(
     return _calibration(
         camera.placed(pose, covariance), method, reports, geometry, consistent
     ), pose
-
-
-def _seen(
-    intrinsics: Intrinsics, sighting: SphereSighting, outline: SphereOutline | None
-) -> SeenBall:
-    assert outline is not None
-    rays = OutlineRays.of(intrinsics, outline.pixels)
-    return SeenBall.of(sighting.center_world, outline, rays)
 
 
 def _refuse_too_few_found(

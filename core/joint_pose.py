@@ -17,6 +17,7 @@ from functools import partial
 import numpy as np
 
 from .arrays import Array
+from .common_error import common_covariance, say_of
 from .covariance import inverse_information
 from .errors import DegeneratePositions
 from .least_squares import levenberg_marquardt
@@ -27,19 +28,20 @@ from .sphere import OutlineRays, Tangency, tangency
 # 1 sigma of the edge bias that the limb's model leaves, measured on rendered balls
 BIAS_SIGMA_PIXELS = 0.05
 REWEIGHTINGS = 4
-# what shifts and swells a whole outline without showing in its residuals (shading, sampling): this
-# many square pixels over the ball's radius, within bounds; found on synthetic balls of 9 to 100 px
-COMMON_ERROR, LEAST_COMMON, MOST_COMMON = 0.35, 0.006, 0.05
 
 
 @dataclass(frozen=True, eq=False)
 class OutlineObservation:
-    """Outline points (N,) of a ball at `centre_world` (3,), their sigmas (N,), used or not."""
+    """Outline points (N,) of a ball at `centre_world` (3,), with their sigmas (N,).
+
+    `principal_point` (2,) in pixels is that of the lens; without it the focal length is not asked.
+    """
 
     outline: OutlineRays
     sigma_pixels: Array
     centre_world: Array
     radius: float
+    principal_point: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +52,8 @@ class JointFit:
       sigma; 1 when all is well. The covariance is already scaled by it.
     - `sighting_misfits` (S,): the same per sighting, over its three degrees of freedom
     - `residuals_pixels`: for each sighting (N,), outwards, the bias taken off
+    - `focal_error`: by what share the true focal lengths seem longer than given, with its sigma;
+      it is not solved for, only asked
     """
 
     camera_from_world: Pose
@@ -59,6 +63,8 @@ class JointFit:
     misfit: float
     sighting_misfits: Array
     residuals_pixels: tuple[Array, ...]
+    focal_error: float
+    focal_error_sigma: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,14 +124,18 @@ def _with_errors(
     left: Sequence[Array],
     weights: Sequence[Array],
 ) -> JointFit:
-    information = np.zeros((7, 7))
+    # the eighth unknown is the focal length: it is not solved for, but asked whether it fits
+    information, gradient, pulls = np.zeros((8, 8)), np.zeros(8), []
     information[6, 6] = 1 / BIAS_SIGMA_PIXELS**2
-    pulls = []
+    gradient[6] = state.bias / BIAS_SIGMA_PIXELS**2
     for o, t, r, w in zip(observations, held, left, weights, strict=True):
-        told, pull = _told_by(o, t, r, w, state.pose)
-        information += told
-        pulls.append(pull)
-    covariance = inverse_information(information)
+        rows = np.column_stack([_rows(o, t, state.pose), _by_log_focal(o, t)])
+        centre = state.pose.apply(o.centre_world)
+        allowed = common_covariance(t, centre, o.radius)
+        say = say_of(t, rows, r, np.sqrt(w) / o.sigma_pixels, allowed)
+        information, gradient = information + say.information, gradient + say.gradient
+        pulls.append(say.pull)
+    covariance = inverse_information(information[:7, :7])
     if covariance is None:
         raise DegeneratePositions(
             "the outlines leave a direction of the pose undetermined; add a ball position away "
@@ -142,41 +152,30 @@ def _with_errors(
         misfit,
         np.sqrt(np.array(pulls) / 3),
         tuple(left),
+        *_focal_error(information, gradient, sum(pulls), freedom),
     )
 
 
-def _told_by(
-    observation: OutlineObservation, held: Tangency, left: Array, weights: Array, pose: Pose
-) -> tuple[Array, float]:
-    """What one ball tells of pose and bias (7, 7), its common error allowed for, and its pull.
+def _by_log_focal(observation: OutlineObservation, held: Tangency) -> Array:
+    """Derivative (N,) of the residuals by the logarithm of both focal lengths.
 
-    The common error moves the ball's centre by a small random amount; it is marginalised. The pull
-    is the chi-squared of where this ball alone would rather be, three degrees of freedom.
+    A longer lens shows what it sees farther out: against it every pixel lies nearer the middle.
     """
-    root = np.sqrt(weights) / observation.sigma_pixels
-    rows = _rows(observation, held, pose) * root[:, None]
-    by_centre = held.by_centre * root[:, None]
-    allowed = _common_covariance(observation, held, pose)
-    of_centre = by_centre.T @ by_centre
-    mixed = by_centre.T @ rows
-    swallowed = np.linalg.inv(of_centre + np.linalg.inv(allowed))
-    rather = np.linalg.lstsq(of_centre, by_centre.T @ (left * root), rcond=None)[0]
-    spread = np.linalg.pinv(of_centre) + allowed
-    return rows.T @ rows - mixed.T @ swallowed @ mixed, float(
-        rather @ np.linalg.solve(spread, rather)
-    )
+    if observation.principal_point is None:
+        return np.zeros(len(held.normals))
+    from_middle = observation.outline.pixels - observation.principal_point
+    by_log: Array = -np.einsum("ni,ni->n", held.normals, from_middle)
+    return by_log
 
 
-def _common_covariance(observation: OutlineObservation, held: Tangency, pose: Pose) -> Array:
-    """Of the ball's centre (3, 3), metres: across the line of sight, and in depth by its size."""
-    centre = pose.apply(observation.centre_world)
-    distance = float(np.linalg.norm(centre))
-    axis = centre / distance
-    across = np.linalg.norm(held.by_centre - np.outer(held.by_centre @ axis, axis), axis=1)
-    pixels_per_metre = float(np.median(across))
-    radius_pixels = pixels_per_metre * observation.radius
-    sigma = float(np.clip(COMMON_ERROR / radius_pixels, LEAST_COMMON, MOST_COMMON))
-    aside, deep = sigma / pixels_per_metre, sigma / radius_pixels * distance
-    along = np.outer(axis, axis)
-    covariance: Array = aside**2 * (np.eye(3) - along) + deep**2 * along
-    return covariance
+def _focal_error(
+    information: Array, gradient: Array, pull: float, freedom: int
+) -> tuple[float, float]:
+    """By what share the focal length seems off, and its sigma; NaN where it can't be told."""
+    covariance = inverse_information(information)
+    if covariance is None or freedom < 2:
+        return float("nan"), float("nan")
+    step = -covariance @ gradient
+    explained = float(step @ information @ step)
+    left = max(1.0, (pull - explained) / (freedom - 1))
+    return float(step[7]), float(np.sqrt(covariance[7, 7] * left))

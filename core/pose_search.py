@@ -13,6 +13,7 @@ import numpy as np
 from .arrays import Array, Mask
 from .errors import DegeneratePositions, NotConverged
 from .frames import pose_from_points
+from .intrinsics import Intrinsics
 from .joint_pose import JointFit, OutlineObservation, fit_pose
 from .least_squares import levenberg_marquardt
 from .outline import SphereOutline
@@ -29,6 +30,8 @@ ALL_WELL, PAYING_MISFIT = 3.0, 0.5
 # how well a rough pose from three balls predicts the others, in ball radii and share of distance
 ROUGH_ACROSS, ROUGH_DEPTH = 0.35, 0.2
 MOST_TRIPLES = 60
+# balls this many times farther apart than their positions betray a mistaken unit
+MISTAKEN_UNIT_LOW, MISTAKEN_UNIT_HIGH = 0.03, 30.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,10 +53,15 @@ class SeenBall:
     observation: OutlineObservation
 
     @staticmethod
-    def of(centre_world: Array, outline: SphereOutline, rays: OutlineRays) -> SeenBall:
+    def of(centre_world: Array, outline: SphereOutline, intrinsics: Intrinsics) -> SeenBall:
+        rays = OutlineRays.of(intrinsics, outline.pixels)
         used = outline.used
         observation = OutlineObservation(
-            rays.chosen(used), outline.sigma_pixels[used], centre_world, outline.radius
+            rays.chosen(used),
+            outline.sigma_pixels[used],
+            centre_world,
+            outline.radius,
+            np.array([intrinsics.cx, intrinsics.cy]),
         )
         return SeenBall(centre_world, outline, observation)
 
@@ -82,9 +90,18 @@ def fit_consistent(balls: Sequence[SeenBall]) -> ConsistentFit:
 
 
 def start_pose(balls: Sequence[SeenBall]) -> Pose:
-    """A pose from the balls' centres: rigid alignment, then their directions, which are sharper."""
-    world = np.array([ball.centre_world for ball in balls])
-    camera = np.array([ball.outline.centre_camera for ball in balls])
+    """A pose from the balls' centres alone. Raises DegeneratePositions."""
+    return start_pose_of(
+        np.array([ball.centre_world for ball in balls]),
+        np.array([ball.outline.centre_camera for ball in balls]),
+    )
+
+
+def start_pose_of(world: Array, camera: Array) -> Pose:
+    """A pose from centres (N, 3) in both frames: rigid alignment, then their directions.
+
+    The directions are sharper than the depths. Raises DegeneratePositions.
+    """
     # depth is known in proportion to the square of the distance
     aligned = pose_from_points(world, camera, 1 / np.linalg.norm(camera, axis=1) ** 4)
     evaluate = partial(_direction_rows, world=world, camera=camera)
@@ -155,8 +172,7 @@ def _largest_agreement(balls: Sequence[SeenBall]) -> tuple[Mask, Pose]:
             best = (int(agrees.sum()), off, agrees, pose)
     if best is None or best[0] < 3:
         raise NotConverged(
-            f"no three of the {len(balls)} balls found fit one pose; check the positions, the "
-            "radius, and that every picture is the one of its position"
+            f"no three of the {len(balls)} balls found fit one pose; {_units_hint(balls)}"
         )
     agreeing = [ball for ball, use in zip(balls, best[2], strict=True) if use]
     return best[2], start_pose(agreeing)
@@ -174,3 +190,23 @@ def _agreeing(balls: Sequence[SeenBall], pose: Pose) -> tuple[Mask, float]:
     across = np.arccos(np.clip(cosine, -1, 1)) * distance / radii
     agrees: Mask = (across < ROUGH_ACROSS) & (along < ROUGH_DEPTH)
     return agrees, float(np.minimum(across, ROUGH_ACROSS).sum())
+
+
+def _units_hint(balls: Sequence[SeenBall]) -> str:
+    """What to check: a wrong unit shows in how far the balls are apart, found against given."""
+    found = np.array([ball.outline.centre_camera for ball in balls])
+    given = np.array([ball.centre_world for ball in balls])
+    apart = [
+        float(np.median(np.linalg.norm(p[:, None] - p, axis=2)[np.triu_indices(len(p), 1)]))
+        for p in (found, given)
+    ]
+    radius = balls[0].outline.radius
+    if apart[0] < radius:
+        return "the ball is in the same place in all pictures: are they the right ones?"
+    ratio = apart[0] / max(apart[1], 1e-12)
+    if MISTAKEN_UNIT_LOW < ratio < MISTAKEN_UNIT_HIGH:
+        return "check that every picture is the one of its position, then positions and radius"
+    return (
+        f"with a radius of {radius:g} m the balls found are {apart[0]:.3g} m apart, the positions "
+        f"given {apart[1]:.3g} m: is one of them in millimetres?"
+    )
