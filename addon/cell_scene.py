@@ -163,7 +163,7 @@ def _camera_of(scene: Any) -> Any:
         data = stored.camera.data
         # a cell may begin a hand's breadth from the lens
         data.clip_start, data.clip_end = 0.01, 100.0
-        data.passepartout_alpha, data.display_size = 0.85, 0.15
+        data.passepartout_alpha, data.display_size = 0.85, 0.08
     if scene.objects.get(stored.camera.name) != stored.camera:
         scene.collection.objects.link(stored.camera)
     return stored.camera

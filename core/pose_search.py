@@ -148,12 +148,35 @@ def _without_the_odd(balls: Sequence[SeenBall]) -> ConsistentFit:
     used, start = _largest_agreement(balls)
     fit = _fitted(balls, used, start)
     for _ in range(len(balls)):
-        odd = _odd(fit) & used
-        if not odd.any() or used.sum() <= 3:
+        odd = _odd(fit) & fit.used
+        if fit.used.sum() <= 3 or (fit.fit.misfit < ALL_WELL and not odd.any()):
             break
-        used = used & ~odd
-        fit = _fitted(balls, used, fit.fit.camera_from_world)
+        if odd.any():
+            fit = _fitted(balls, fit.used & ~odd, fit.fit.camera_from_world)
+            continue
+        better = _best_without_one(balls, fit)
+        if better is None:
+            break
+        fit = better
     return fit
+
+
+def _best_without_one(balls: Sequence[SeenBall], fit: ConsistentFit) -> ConsistentFit | None:
+    """The fit without the ball that bends it most, None where no single one does.
+
+    One wrong place can bend the pose until all balls look equally wrong, and none is odd.
+    """
+    tried = []
+    for i in np.flatnonzero(fit.used):
+        fewer = fit.used & (np.arange(len(balls)) != i)
+        try:
+            start = start_pose([ball for ball, use in zip(balls, fewer, strict=True) if use])
+            tried.append(_fitted(balls, fewer, start))
+        except DegeneratePositions:
+            continue
+    best = min(tried, key=lambda one: one.fit.misfit, default=None)
+    pays = best is not None and best.fit.misfit < PAYING_MISFIT * fit.fit.misfit
+    return best if pays else None
 
 
 def _largest_agreement(balls: Sequence[SeenBall]) -> tuple[Mask, Pose]:

@@ -63,7 +63,7 @@ def test_from_the_second_corner_on_the_base_is_drawn():
 
 
 def test_what_can_not_be_the_object_is_said_and_not_taken():
-    assert "horizon" in session(BOX).preview(np.array([400.0, -60.0])).complaint
+    assert "horizon" in session(BOX).preview(np.array([400.0, -260.0])).complaint
     assert "line" in session(BOX, *BASE[:2]).preview(BASE[0]).complaint
     below = session(BOX, *BASE).preview(BASE[1] + [0.0, 20.0])
     assert below.complaint != "" and below.lines != ()

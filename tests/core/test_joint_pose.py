@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pose of all outlines: exact on exact outlines, and as uncertain as it states on noisy ones."""
+"""The pose of all outlines: exact on exact ones, and as uncertain as it states on noisy ones."""
 
 from __future__ import annotations
 

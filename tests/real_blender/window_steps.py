@@ -77,14 +77,20 @@ def click(pixel, **keys):
     yield PAUSE
 
 
-def shot(name):
-    """A screenshot of what is drawn after all that was asked for has been drawn."""
+def settle():
+    """Wait until all that was asked for is drawn: only then are Blender's view matrices new."""
+    yield PAUSE
     drawn.clear()
     view()[1].tag_redraw()
     while not drawn:
         yield PAUSE
-    yield 2 * PAUSE
-    # of the screen itself: Blender's own screenshot is black with some software drivers
+    yield PAUSE
+
+
+def shot(name):
+    """A screenshot, of the screen itself: some software drivers leave Blender's own one black."""
+    yield from settle()
+    yield PAUSE
     if shutil.which("import"):
         subprocess.run(["import", "-window", "root", out / f"{name}.png"], check=True)
     else:
@@ -119,7 +125,7 @@ def steps():
     yield from click(job["box"][0])
     x, y = place_of(job["box"][0])
     press("WHEELUPMOUSE", x, y)
-    yield PAUSE
+    yield from settle()
     yield from click(job["box"][1])
     move(job["drum"][0])
     yield from shot("4_foot")
@@ -130,7 +136,7 @@ def steps():
     move(job["box"][3])
     yield from shot("5_height")
     press("WHEELDOWNMOUSE", *place_of(job["box"][3]))
-    yield PAUSE
+    yield from settle()
     yield from click(job["box"][3])
     found["left_over"] = handlers()
     yield from shot("6_box")
