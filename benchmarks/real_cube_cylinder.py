@@ -55,6 +55,7 @@ def main() -> None:
     _report(*results)
     if arguments.out:
         overlay = draw_overlay(picture, cell.camera, cell.objects)
+        arguments.out.mkdir(parents=True, exist_ok=True)
         with atomic_path(arguments.out / "cube_cylinder.png") as path:
             cv2.imwrite(str(path), overlay)
 
