@@ -40,6 +40,8 @@ def run(args: argparse.Namespace) -> int:
         print_json([_entry(m) for m in modelled])
     else:
         tell(modelled)
+    if cell.camera.covariance is None:
+        warn(["the camera's pose states no error: each ± holds the picks' error alone"])
     warn([warning for m in modelled for warning in m.warnings])
     return 0
 
