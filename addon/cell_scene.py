@@ -33,7 +33,7 @@ def open_scene(context: Any, cell: Cell, title: str) -> Any:
     The picture is read first, so that a refusal (PictureError, InvalidValue) changes nothing.
     Returns the scene.
     """
-    from ..core.pictures import read_picture
+    from ..core.picture.pictures import read_picture
 
     name = shown_first(cell)
     picture = None if name is None else read_picture(cell.path_of(name), cell.camera.intrinsics)

@@ -16,7 +16,8 @@ from typing import Any
 import bpy
 
 from ..core.cell import Cell
-from ..core.cell_file import cell_from_document, document_from_cell, dumped
+from ..core.document.cell_file import cell_from_document, document_from_cell
+from ..core.document.json_text import dumped
 from ..core.reference import ReferencePlane
 from .report import Report, dump_report, parse_report
 

@@ -17,7 +17,7 @@ def add_modelled(context: Any, kind: str, name: str, on: str, picks: str) -> Any
     An empty `name` gives the first free one, an empty `on` the list's active reference. Raises
     PickError for picks that can't be the object, InvalidValue for a name that is taken.
     """
-    from ..core.modelling import solve_sketch
+    from ..core.modelling.solve import solve_sketch
     from ..core.sketch import Sketch
     from ..scene.objects import build_object
 

@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.arrays import Array
+from ..core.ball.sphere import outline_pixels
 from ..core.camera import Camera
 from ..core.cell import Cell
+from ..core.picture.wireframe import finite_parts, wireframe
 from ..core.primitives import Primitive
-from ..core.sphere import outline_pixels
-from ..core.wireframe import finite_parts, wireframe
 from .drawing import GREEN, HALO, ORANGE, RED, SKY, YELLOW, Color
 from .report import Report
 

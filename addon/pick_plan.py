@@ -11,8 +11,8 @@ import numpy as np
 
 from ..core.arrays import Array
 from ..core.camera import Camera
+from ..core.modelling.reverse_mapping import points_on_line_or_nan, points_on_plane_or_nan
 from ..core.reference import ReferenceLine, ReferencePlane
-from ..core.reverse_mapping import points_on_line_or_nan, points_on_plane_or_nan
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,11 @@ import numpy as np
 from ..core.arrays import Array
 from ..core.camera import Camera
 from ..core.errors import MonocellError
-from ..core.modelling import solve_sketch
+from ..core.modelling.reverse_mapping import points_on_plane
+from ..core.modelling.solve import solve_sketch
+from ..core.picture.wireframe import Polyline, wireframe
 from ..core.reference import ReferencePlane
-from ..core.reverse_mapping import points_on_plane
 from ..core.sketch import Sketch
-from ..core.wireframe import Polyline, wireframe
 from .pick_plan import PickPlan, picks_of
 
 PREVIEW = "preview"
@@ -84,7 +84,7 @@ class PickSession:
             return Preview(after._chain(), "", _plain(error))
 
     def _solved(self, place: str) -> Preview:
-        from ..core.overlay import caption
+        from ..core.picture.overlay import caption
 
         known = {} if self.complete else self.plan.flat
         sketch = Sketch(PREVIEW, self.plan.kind, self.plane.name, self.picks(), known)

@@ -12,12 +12,12 @@ from __future__ import annotations
 import argparse
 
 import numpy as np
-from monocell.core.calibration import calibrate_outlines
+from monocell.core.ball.find import find_sphere
+from monocell.core.calibration.calibrate import calibrate_outlines
 from monocell.core.camera import Camera
 from monocell.core.comparison import pose_error
 from monocell.core.errors import MonocellError
-from monocell.core.find import find_sphere
-from monocell.core.synthetic import Photographer
+from monocell.core.picture.synthetic import Photographer
 from monocell.headless.told import table
 from rigs import RADIUS, random_rig
 

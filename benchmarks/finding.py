@@ -13,10 +13,10 @@ import time
 from collections.abc import Callable
 
 import numpy as np
-from monocell.core.calibration import calibrate_outlines
+from monocell.core.ball.find import find_sphere
+from monocell.core.calibration.calibrate import calibrate_outlines
 from monocell.core.camera import Camera
-from monocell.core.find import find_sphere
-from monocell.core.synthetic import Photographer
+from monocell.core.picture.synthetic import Photographer
 from monocell.headless.told import table
 from rigs import RADIUS, random_rig
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from monocell.core import Appearance, Box, Camera, Cell, Cylinder, Intrinsics, Pose
-from monocell.core.cell_file import read_cell, write_cell
+from monocell.core.document.cell_file import read_cell, write_cell
 
 COLORS = ((0.7, 0.05, 0.04), (0.03, 0.16, 0.55), (0.9, 0.55, 0.03), (0.03, 0.36, 0.16))
 

@@ -21,8 +21,8 @@ import cv2
 import numpy as np
 from monocell.core import Camera, Cell, Intrinsics, Pose, ReferencePlane, Sketch
 from monocell.core.atomic import atomic_path
-from monocell.core.modelling import Modelled, model_cell
-from monocell.core.overlay import draw_overlay
+from monocell.core.modelling.solve import Modelled, model_cell
+from monocell.core.picture.overlay import draw_overlay
 
 PICK_SIGMA_PIXELS = 0.5
 CUBE_EDGE_MM, CYLINDER_RADIUS_MM, CYLINDER_HEIGHT = 84.0, 40.0, 0.25

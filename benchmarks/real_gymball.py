@@ -16,14 +16,14 @@ import time
 from pathlib import Path
 
 import numpy as np
+from monocell.core.ball.find import find_sphere
+from monocell.core.ball.sphere import outline_pixels
+from monocell.core.calibration.frames import pose_from_points
 from monocell.core.camera import Camera
-from monocell.core.find import find_sphere
-from monocell.core.frames import pose_from_points
 from monocell.core.intrinsics import Intrinsics
-from monocell.core.overlay import BallOutline, draw_overlay
-from monocell.core.pictures import read_picture
+from monocell.core.picture.overlay import BallOutline, draw_overlay
+from monocell.core.picture.pictures import read_picture
 from monocell.core.pose import Pose
-from monocell.core.sphere import outline_pixels
 from monocell.headless.pictures import write_picture
 from monocell.headless.told import table
 

@@ -8,7 +8,7 @@ import time
 import numpy as np
 from monocell.core import Camera, Distortion, Intrinsics, Pose, ReferencePlane
 from monocell.core.arrays import Array
-from monocell.core.reverse_mapping import points_on_plane
+from monocell.core.modelling.reverse_mapping import points_on_plane
 
 PIXELS = 1_000_000
 REPEATS = 5

@@ -10,10 +10,10 @@ from monocell.core.camera import Camera
 from monocell.core.cell import Cell
 from monocell.core.distortion import Distortion
 from monocell.core.intrinsics import Intrinsics
-from monocell.core.pictures import Picture
+from monocell.core.picture.pictures import Picture
+from monocell.core.picture.synthetic import Ball, Photographer, photograph
 from monocell.core.pose import Pose
 from monocell.core.sighting import SphereSighting
-from monocell.core.synthetic import Ball, Photographer, photograph
 
 RADIUS = 0.04
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import cv2
 from monocell.core.camera import Camera
 from monocell.core.cell import Cell
-from monocell.core.cell_file import read_cell, write_cell
+from monocell.core.document.cell_file import read_cell, write_cell
 from monocell.core.sketch import Sketch
 
 QUALITY = 92

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.intrinsics import Intrinsics
-from ..core.undistortion import undistorted_picture
+from ..core.picture.undistortion import undistorted_picture
 
 NAME = "monocell background"
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..core.appearance import Appearance
 from ..core.arrays import Array
-from ..core.entries import object_entry, object_from_entry
+from ..core.document.entries import object_entry, object_from_entry
 from ..core.errors import InvalidValue
 from ..core.pose import Pose
 from ..core.primitives import Box, Cylinder, Primitive

@@ -20,7 +20,7 @@ from ..core.arrays import Array
 from ..core.atomic import atomic_path
 from ..core.camera import Camera
 from ..core.errors import RenderFailed
-from ..core.undistortion import distorted_picture, pinhole_around
+from ..core.picture.undistortion import distorted_picture, pinhole_around
 from .blender_camera import place_camera
 from .quiet import quiet_stdout
 

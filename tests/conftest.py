@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib.util
 import os
 import shutil
@@ -21,6 +22,12 @@ def pytest_configure(config):
     folder = tempfile.mkdtemp(prefix="monocell-tests-")
     os.environ["BLENDER_USER_RESOURCES"] = folder
     config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
+
+
+def pytest_unconfigure():
+    # hypothesis leaves a callback that keeps bpy's module alive past Python's end; Blender then
+    # frees nothing, and its thread that closes .blend files waits for ever
+    gc.callbacks.clear()
 
 
 def pytest_collection_modifyitems(items):

@@ -38,7 +38,7 @@ class AddBox(PicksOnPicture, NeedsPose, bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Solve the picks and build the box."""
-        from ...core.overlay import caption
+        from ...core.picture.overlay import caption
 
         modelled = add_modelled(context, self.plan.kind, self.name, self.on, self.picks)
         self.name = modelled.object.name

@@ -38,7 +38,7 @@ class Calibrate(NeedsCell, bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Calibrate, then let document and Blender's camera take the pose."""
-        from ...core.calibration import calibrate_cell
+        from ...core.calibration.calibrate import calibrate_cell
 
         with _hourglass(context.window):
             cell, calibration = calibrate_cell(bare_cell(context.scene))

@@ -24,7 +24,7 @@ class OpenCell(bpy.types.Operator, ImportHelper):
     @refuses
     def execute(self, context):
         """Read, build, and look through the camera."""
-        from ...core.cell_file import read_cell
+        from ...core.document.cell_file import read_cell
 
         cell = read_cell(bpy.path.abspath(self.filepath))
         scene = open_scene(context, cell, title_of(self.filepath))

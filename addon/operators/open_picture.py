@@ -34,8 +34,8 @@ class OpenPicture(bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Read both, build, and look through the camera."""
-        from ...core.camera_file import read_camera
         from ...core.cell import Cell
+        from ...core.document.camera_file import read_camera
         from ...core.errors import DocumentError
 
         if not self.picture or not self.camera:

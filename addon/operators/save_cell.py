@@ -31,7 +31,7 @@ class SaveCell(NeedsCell, bpy.types.Operator, ExportHelper):
     @refuses
     def execute(self, context):
         """Write it whole or not at all."""
-        from ...core.cell_file import write_cell
+        from ...core.document.cell_file import write_cell
 
         path = bpy.path.abspath(self.filepath)
         cell = read_scene(context.scene)

@@ -24,7 +24,7 @@ class ShowPicture(NeedsCell, bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Read the picture, then undistort and show it."""
-        from ...core.pictures import read_picture
+        from ...core.picture.pictures import read_picture
 
         cell = bare_cell(context.scene)
         pixels = read_picture(cell.path_of(self.picture), cell.camera.intrinsics)

@@ -24,7 +24,7 @@ class SolveAgain(NeedsPose, bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Solve, then rebuild what changed."""
-        from ...core.modelling import model_cell
+        from ...core.modelling.solve import model_cell
 
         scene = context.scene
         cell, results = model_cell(read_scene(scene), scene.monocell_inputs.pick_sigma_pixels)

@@ -6,15 +6,15 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from ...core.calibration import Calibration, calibrate_cell
+from ...core.ball.sphere import outline_pixels
+from ...core.calibration.calibrate import Calibration, calibrate_cell
 from ...core.camera import Camera
 from ...core.cell import Cell
-from ...core.cell_file import read_cell, write_cell
-from ...core.modelling import model_cell
-from ...core.overlay import BallOutline, draw_overlay
-from ...core.pick_fit import Modelled
-from ...core.pictures import read_picture
-from ...core.sphere import outline_pixels
+from ...core.document.cell_file import read_cell, write_cell
+from ...core.modelling.pick_fit import Modelled
+from ...core.modelling.solve import model_cell
+from ...core.picture.overlay import BallOutline, draw_overlay
+from ...core.picture.pictures import read_picture
 from ..pictures import write_picture
 from ..told import progress
 from .hand import pick_objects

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.entries import object_from_entry
+from ...core.document.entries import object_from_entry
 from ...core.errors import DocumentError, MissingPackage
 from ...core.primitives import Primitive
 from ...core.rotation import rotation_from_vector

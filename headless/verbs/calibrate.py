@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ...core.calibration import METHODS, Calibration, calibrate_cell
-from ...core.cell_file import read_cell, write_cell
-from ...core.entries import camera_entry
+from ...core.calibration.calibrate import METHODS, Calibration, calibrate_cell
+from ...core.document.cell_file import read_cell, write_cell
+from ...core.document.entries import camera_entry
 from ..cli import DONE, NOT_TRUSTED
 from ..told import millimetres, point_told, print_json, table, warn
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ...core.cell_file import read_cell
 from ...core.comparison import Comparison, ObjectError, compare_cells
+from ...core.document.cell_file import read_cell
 from ..told import print_json, table, warn
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ...core.calibration import Calibration
+from ...core.calibration.calibrate import Calibration
 from ...core.cell import Cell
 from ...core.comparison import Comparison, compare_cells
 from ..blender import require_blender

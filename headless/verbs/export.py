@@ -6,7 +6,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ...core.cell_file import read_cell
+from ...core.document.cell_file import read_cell
 from ...core.errors import InvalidValue
 from ..blender import require_blender
 from ..told import warn

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ...core.camera_file import read_camera
+from ...core.ball.outline import SphereOutline
+from ...core.document.camera_file import read_camera
 from ...core.intrinsics import Intrinsics
-from ...core.outline import SphereOutline
 from ...core.sighting import SphereSighting
 from ..told import millimetres, point_told, print_json, warn
 
@@ -34,8 +34,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Find the ball, print it, draw it."""
-    from ...core.find import find_sphere
-    from ...core.pictures import read_picture
+    from ...core.ball.find import find_sphere
+    from ...core.picture.pictures import read_picture
 
     # the same checks as in a document: radius and window are refused with their numbers
     asked = SphereSighting(str(args.picture), np.zeros(3), args.radius, _window(args.window))
@@ -87,10 +87,10 @@ def _tell(outline: SphereOutline) -> None:
 
 
 def _draw(path: Path, picture: Any, intrinsics: Intrinsics, outline: SphereOutline) -> None:
+    from ...core.ball.sphere import outline_pixels
     from ...core.camera import Camera
-    from ...core.overlay import BallOutline, draw_overlay
+    from ...core.picture.overlay import BallOutline, draw_overlay
     from ...core.pose import Pose
-    from ...core.sphere import outline_pixels
     from ..pictures import write_picture
 
     camera = Camera(intrinsics, Pose.identity())

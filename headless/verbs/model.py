@@ -6,11 +6,11 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ...core.cell_file import read_cell, write_cell
-from ...core.entries import object_entry
+from ...core.document.cell_file import read_cell, write_cell
+from ...core.document.entries import object_entry
 from ...core.errors import InvalidValue
-from ...core.modelling import model_cell
-from ...core.pick_fit import Modelled
+from ...core.modelling.pick_fit import Modelled
+from ...core.modelling.solve import model_cell
 from ..told import millimetres, point_told, print_json, table, warn
 
 

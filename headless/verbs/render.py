@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.cell import Cell
-from ...core.cell_file import read_cell, write_cell
+from ...core.document.cell_file import read_cell, write_cell
 from ...core.errors import InvalidValue
 from ..blender import require_blender
 from ..told import progress

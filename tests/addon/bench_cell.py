@@ -17,8 +17,8 @@ from monocell.core import (
     ReferencePlane,
     SphereSighting,
 )
-from monocell.core.cell_file import write_cell
-from monocell.core.synthetic import Ball, photograph
+from monocell.core.document.cell_file import write_cell
+from monocell.core.picture.synthetic import Ball, photograph
 
 LENS = Distortion("plumb_bob", np.array([-0.22, 0.07, 0.0006, -0.0004, -0.01]))
 INTRINSICS = Intrinsics(800, 600, 760.0, 757.0, 411.3, 292.8, LENS)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import gc
 import importlib
 from pathlib import Path
 
@@ -11,12 +10,6 @@ import pytest
 
 EXTENSION = "bl_ext.user_default.monocell"
 ROOT = Path(__file__).resolve().parents[2]
-
-
-def pytest_unconfigure():
-    # hypothesis leaves a callback that keeps bpy's module alive past Python's end; Blender then
-    # frees nothing, and its thread that closes .blend files waits for ever
-    gc.callbacks.clear()
 
 
 @pytest.fixture(scope="session")

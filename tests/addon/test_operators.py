@@ -4,8 +4,8 @@ import json
 import bench_cell
 import numpy as np
 import pytest
-from monocell.core.cell_file import read_cell
-from monocell.core.entries import camera_entry
+from monocell.core.document.cell_file import read_cell
+from monocell.core.document.entries import camera_entry
 
 pytestmark = pytest.mark.blender
 

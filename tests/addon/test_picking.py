@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from monocell.addon.pick_plan import BOX, CYLINDER, corner_below
 from monocell.addon.pick_session import PickSession
 from monocell.addon.picture_frame import PictureFrame
-from monocell.core.undistortion import undistorted_picture
+from monocell.core.picture.undistortion import undistorted_picture
 
 CORNERS = bench_cell.CAMERA.project(bench_cell.BOX.corners_world())
 BASE = CORNERS[bench_cell.ROUND]

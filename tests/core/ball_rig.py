@@ -9,9 +9,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 from monocell.core import Camera, Cell, Distortion, Intrinsics, Pose, SphereSighting
-from monocell.core.joint_pose import OutlineObservation
-from monocell.core.sphere import OutlineRays, outline_pixels, tangency
-from monocell.core.synthetic import Ball, Photographer, photograph
+from monocell.core.ball.sphere import OutlineRays, outline_pixels, tangency
+from monocell.core.calibration.joint_pose import OutlineObservation
+from monocell.core.picture.synthetic import Ball, Photographer, photograph
 
 RADIUS = 0.04
 LENS = Intrinsics(

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from ball_rig import LENS, PLACES, POSE, RADIUS, pose_twist, sigmas_off, write_rig
 from monocell.core import Camera, Cell
-from monocell.core.calibration import calibrate_cell, calibrate_outlines
+from monocell.core.ball.find import find_sphere
+from monocell.core.calibration.calibrate import calibrate_cell, calibrate_outlines
 from monocell.core.errors import (
     DegeneratePositions,
     InvalidValue,
@@ -19,8 +20,7 @@ from monocell.core.errors import (
     SphereNotFound,
     TooFewSightings,
 )
-from monocell.core.find import find_sphere
-from monocell.core.pictures import read_picture
+from monocell.core.picture.pictures import read_picture
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 from drawn_cells import whole_document
-from monocell.core.camera_file import read_camera
+from monocell.core.document.camera_file import read_camera
 from monocell.core.errors import DocumentError
 
 K = [1200.0, 0, 652.3, 0, 1195.0, 471.8, 0, 0, 1]

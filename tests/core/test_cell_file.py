@@ -11,7 +11,7 @@ import pytest
 from drawn_cells import cells, whole_document
 from hypothesis import HealthCheck, given, settings
 from monocell.core import Camera, Cell, Intrinsics, SphereSighting
-from monocell.core.cell_file import (
+from monocell.core.document.cell_file import (
     cell_from_document,
     document_from_cell,
     dumped,

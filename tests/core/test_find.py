@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from ball_rig import LENS, PLACES, POSE, QUIET, RADIUS, picture_of, sigmas_off, window_around
 from monocell.core import Distortion, Intrinsics
+from monocell.core.ball.find import find_sphere, find_spheres, measure_sphere
+from monocell.core.ball.sphere import outline_pixels
 from monocell.core.errors import InvalidValue, PictureError, SphereCut, SphereNotFound
-from monocell.core.find import find_sphere, find_spheres, measure_sphere
-from monocell.core.sphere import outline_pixels
-from monocell.core.synthetic import Ball, Photographer, photograph
+from monocell.core.picture.synthetic import Ball, Photographer, photograph
 
 SHADED = replace(QUIET, texture=0.15)
 

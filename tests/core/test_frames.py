@@ -8,9 +8,9 @@ import pytest
 from drawn import poses
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from monocell.core.calibration.frames import pose_from_points, pose_from_triads
+from monocell.core.calibration.position_geometry import check_positions, geometry_of
 from monocell.core.errors import DegeneratePositions, TooFewSightings
-from monocell.core.frames import pose_from_points, pose_from_triads
-from monocell.core.position_geometry import check_positions, geometry_of
 
 LAWS = settings(max_examples=40, deadline=None)
 SEEDS = st.integers(0, 2**32 - 1)

@@ -15,10 +15,10 @@ from ball_rig import (
     pose_twist,
     sigmas_off,
 )
+from monocell.core.ball.sphere import OutlineRays, tangency
+from monocell.core.calibration.joint_pose import BIAS_SIGMA_PIXELS, OutlineObservation, fit_pose
 from monocell.core.errors import DegeneratePositions
-from monocell.core.joint_pose import BIAS_SIGMA_PIXELS, OutlineObservation, fit_pose
 from monocell.core.pose import point_jacobian
-from monocell.core.sphere import OutlineRays, tangency
 
 # a start as three rough centres give it
 START = POSE.perturbed([0.01, -0.02, 0.01, 0.02, -0.01, 0.03])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from monocell.core import Appearance, Box, Camera, Cell, Pose, ReferenceLine, Sketch
 from monocell.core.errors import InvalidValue, NoPose, PickError
-from monocell.core.modelling import model_cell, solve_sketch
+from monocell.core.modelling.solve import model_cell, solve_sketch
 from picked_scene import (
     FLOOR,
     WALL,

@@ -6,11 +6,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from monocell.core import Box, Camera, Cylinder, Intrinsics, Pose
+from monocell.core.ball.sphere import outline_pixels
 from monocell.core.errors import PictureError
-from monocell.core.overlay import BallOutline, caption, draw_overlay
-from monocell.core.overlay_label import Label, place_label
-from monocell.core.sphere import outline_pixels
-from monocell.core.wireframe import wireframe
+from monocell.core.picture.overlay import BallOutline, caption, draw_overlay
+from monocell.core.picture.overlay_label import Label, place_label
+from monocell.core.picture.wireframe import wireframe
 from picked_scene import FLOOR, box_on, camera, cylinder_on
 
 

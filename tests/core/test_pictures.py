@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from monocell.core import Intrinsics
 from monocell.core.errors import PictureError
-from monocell.core.pictures import linear_light, read_picture
-from monocell.core.synthetic import Ball, Photographer, photograph
+from monocell.core.picture.pictures import linear_light, read_picture
+from monocell.core.picture.synthetic import Ball, Photographer, photograph
 
 LENS = Intrinsics(64, 48, 60.0, 60.0, 31.5, 23.5)
 

@@ -16,7 +16,7 @@ from monocell.core import (
     ReferencePlane,
 )
 from monocell.core.errors import InvalidValue, PickError
-from monocell.core.reverse_mapping import (
+from monocell.core.modelling.reverse_mapping import (
     grazing_warnings,
     point_covariance_on_line,
     point_covariance_on_plane,

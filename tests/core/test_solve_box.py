@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from monocell.core import Pose, ReferencePlane, Sketch
 from monocell.core.errors import PickError
-from monocell.core.solve_box import solve_box
+from monocell.core.modelling.solve_box import solve_box
 from picked_scene import (
     FLOOR,
     LENSES,

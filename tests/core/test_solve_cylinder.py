@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from monocell.core import Pose, Sketch
-from monocell.core.cylinder_equations import CylinderPicks
 from monocell.core.errors import PickError
-from monocell.core.solve_cylinder import solve_cylinder
+from monocell.core.modelling.cylinder_equations import CylinderPicks
+from monocell.core.modelling.solve_cylinder import solve_cylinder
 from picked_scene import (
     FLOOR,
     LENSES,

@@ -9,8 +9,7 @@ from drawn import MODELS, balls, differences
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from monocell.core import Distortion, Intrinsics
-from monocell.core.errors import InvalidValue, SphereNotFound
-from monocell.core.sphere import (
+from monocell.core.ball.sphere import (
     OutlineRays,
     outline_pixels,
     outline_rays,
@@ -18,6 +17,7 @@ from monocell.core.sphere import (
     sphere_from_rays,
     tangency,
 )
+from monocell.core.errors import InvalidValue, SphereNotFound
 
 LAWS = settings(max_examples=40, deadline=None)
 LENS = Intrinsics(

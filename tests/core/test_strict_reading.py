@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 from drawn_cells import whole_document
-from monocell.core.cell_file import cell_from_document
-from monocell.core.entries import object_from_entry
+from monocell.core.document.cell_file import cell_from_document
+from monocell.core.document.entries import object_from_entry
 from monocell.core.errors import DocumentError
 
 # a null stands for "not known" in these, and for a corner that is not seen among picks

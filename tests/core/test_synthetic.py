@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from monocell.core import Distortion, Intrinsics
-from monocell.core.limb import find_limb, sample_offsets
-from monocell.core.pictures import linear_light
-from monocell.core.sphere import outline_pixels
-from monocell.core.synthetic import Ball, Photographer, photograph
+from monocell.core.ball.limb import find_limb, sample_offsets
+from monocell.core.ball.sphere import outline_pixels
+from monocell.core.picture.pictures import linear_light
+from monocell.core.picture.synthetic import Ball, Photographer, photograph
 
 LENS = Intrinsics(
     240, 180, 300.0, 299.0, 121.3, 88.2, Distortion("plumb_bob", [-0.2, 0.06, 4e-4, -3e-4, 0.0])

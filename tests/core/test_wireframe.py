@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from monocell.core import Box, Camera, Cylinder, Distortion, Intrinsics, Pose
 from monocell.core.errors import InvalidValue
+from monocell.core.picture.wireframe import wireframe
 from monocell.core.primitives import Primitive
-from monocell.core.wireframe import wireframe
 from picked_scene import FLOOR, LENSES, POSE, WALL, box_on, camera, cylinder_on
 
 

@@ -20,8 +20,8 @@ from monocell.core import (
     Sketch,
     SphereSighting,
 )
-from monocell.core.cell_file import write_cell
-from monocell.core.synthetic import Ball, Photographer, photograph
+from monocell.core.document.cell_file import write_cell
+from monocell.core.picture.synthetic import Ball, Photographer, photograph
 
 RADIUS = 0.04
 LENS = Intrinsics(

@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 import pytest
-from monocell.core.cell_file import read_cell
+from monocell.core.document.cell_file import read_cell
 from monocell.core.version import VERSION
 from monocell.headless.cli import VERBS, main
 from synthetic_cell import BLOCK, DRUM, LENS, PLACES, POSE, RADIUS
@@ -61,7 +61,7 @@ def test_find_tells_people_in_lines(run):
 
 
 def test_find_draws_its_outline_over_the_picture(run, job):
-    from monocell.core.pictures import read_picture
+    from monocell.core.picture.pictures import read_picture
 
     assert run(*FIND, "--overlay", "seen.png")[0] == 0
     drawn, given = read_picture(job / "seen.png", LENS), read_picture(job / "pose_0.png", LENS)

@@ -8,7 +8,7 @@ import json
 import cv2
 import numpy as np
 import pytest
-from monocell.core.synthetic import Ball, Photographer, photograph
+from monocell.core.picture.synthetic import Ball, Photographer, photograph
 from synthetic_cell import LENS, RADIUS
 
 FIND = ("find", "pose_0.png", "--camera", "lens.json", "--radius", RADIUS)

@@ -28,7 +28,7 @@ ALLOWED = {
     "headless": ({"numpy", "cv2"} | ROBOT, {"core", "scene", "headless"}),
 }
 # the one reader of YAML
-MORE = {"core/camera_file.py": {"ruamel"}}
+MORE = {"core/document/camera_file.py": {"ruamel"}}
 # a script started by Blender, not a module of the package: it makes the package importable
 SCRIPTS = ("headless/run.py",)
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import bench_cell
 import numpy as np
 import pytest
-from monocell.core.cell_file import read_cell
+from monocell.core.document.cell_file import read_cell
 
 pytestmark = [pytest.mark.real_blender, pytest.mark.slow]
 

@@ -11,7 +11,7 @@ import bench_cell
 import cv2
 import numpy as np
 import pytest
-from monocell.core.cell_file import read_cell
+from monocell.core.document.cell_file import read_cell
 
 pytestmark = [pytest.mark.real_blender, pytest.mark.slow]
 

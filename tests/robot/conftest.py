@@ -3,17 +3,9 @@
 
 from __future__ import annotations
 
-import gc
-
 import numpy as np
 import pytest
 from monocell.core import Appearance, Box, Cylinder, Pose
-
-
-def pytest_unconfigure(config):
-    # hypothesis leaves a callback at the garbage collector, and bpy, which collects once more while
-    # the interpreter is taken down, waits for it for ever
-    gc.callbacks[:] = [c for c in gc.callbacks if not c.__module__.startswith("hypothesis")]
 
 
 def standing(x, y, z, turn=0.0):

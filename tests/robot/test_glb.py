@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from monocell.core import Box, Cylinder, Pose
-from monocell.core.entries import object_entry
+from monocell.core.document.entries import object_entry
 from monocell.core.errors import DocumentError
 from monocell.headless.robot.glb import read_environment
 

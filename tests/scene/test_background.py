@@ -4,7 +4,7 @@ import pytest
 from monocell.core.distortion import Distortion
 from monocell.core.errors import PictureError
 from monocell.core.intrinsics import Intrinsics
-from monocell.core.undistortion import undistorted_picture
+from monocell.core.picture.undistortion import undistorted_picture
 
 LENS = Distortion("plumb_bob", np.array([-0.25, 0.06, 0.001, -0.0005, 0.0]))
 INTRINSICS = Intrinsics(160, 120, 120.0, 122.0, 81.0, 57.5, LENS)

@@ -12,7 +12,7 @@ from monocell.core.appearance import Appearance
 from monocell.core.camera import Camera
 from monocell.core.cell import Cell
 from monocell.core.distortion import Distortion
-from monocell.core.entries import camera_entry, object_entry
+from monocell.core.document.entries import camera_entry, object_entry
 from monocell.core.errors import InvalidValue, MonocellError
 from monocell.core.intrinsics import Intrinsics
 from monocell.core.pose import Pose

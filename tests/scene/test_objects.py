@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from monocell.core.appearance import Appearance
-from monocell.core.entries import object_entry
+from monocell.core.document.entries import object_entry
 from monocell.core.errors import InvalidValue
 from monocell.core.pose import Pose
 from monocell.core.primitives import Box, Cylinder

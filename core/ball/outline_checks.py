@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether a measured outline is a ball's: its numbers in, doubts or a named refusal out."""
+
+from __future__ import annotations
+
+from ..errors import SphereCut, SphereNotFound
+
+LEAST_COVERAGE, DOUBTFUL_COVERAGE = 0.35, 0.5
+LARGEST_CUT = 0.25
+# sigmas over chance that an outline has to stand out by, and by which it may be loose
+LEAST_EVIDENCE, CLEAR_EVIDENCE, LOOSE_SHARE = 4.0, 6.5, 0.04
+
+
+def cut_refusal(cut: float) -> SphereCut:
+    """The refusal of a ball of whose outline the share `cut` lies outside the picture."""
+    return SphereCut(
+        f"the ball is cut by the border: {100 * cut:.0f} % of its outline lies outside the picture "
+        f"(at most {100 * LARGEST_CUT:.0f} % may); use a picture that shows more of it"
+    )
+
+
+def refuse_little(coverage: float, cut: float) -> None:
+    """Raises SphereCut or SphereNotFound when too little of an outline is seen."""
+    if cut > LARGEST_CUT:
+        raise cut_refusal(cut)
+    if coverage < LEAST_COVERAGE:
+        raise SphereNotFound(
+            f"only {100 * coverage:.0f} % of the outline has an edge where a ball has one "
+            f"(at least {100 * LEAST_COVERAGE:.0f} % is needed)"
+        )
+
+
+def refuse_clutter(evidence: float, rms: float, size: float) -> None:
+    """Edges of a texture agree with some circle too, but by less and not as well."""
+    loose = evidence < CLEAR_EVIDENCE and rms > LOOSE_SHARE * size
+    if evidence < LEAST_EVIDENCE or loose:
+        raise SphereNotFound(
+            f"the edges make a circle of {size:.0f} px radius only {evidence:.1f} sigmas better "
+            f"than chance, {rms:.1f} px rms off it"
+        )
+
+
+def doubts_of(coverage: float, cut: float, rms: float, size: float) -> tuple[str, ...]:
+    """What to tell of an outline of `size` pixels radius that is used all the same."""
+    doubts = []
+    if coverage < DOUBTFUL_COVERAGE:
+        doubts.append(f"only {100 * coverage:.0f} % of the outline is seen")
+    if cut > 0.01:
+        doubts.append(f"the border cuts {100 * cut:.0f} % of the outline")
+    if rms > max(0.5, 0.01 * size):
+        doubts.append(f"the outline is {rms:.2f} px rms off a sphere's: is it round?")
+    return tuple(doubts)

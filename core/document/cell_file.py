@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cell documents on disk: `*.cell.json` to a Cell and back, read strictly, written whole."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from ..atomic import atomic_path
+from ..cell import Cell, Reference, check_names
+from ..errors import DocumentError, InvalidValue
+from ..primitives import Primitive
+from ..sketch import Sketch
+from .entries import (
+    camera_entry,
+    camera_from_entry,
+    object_entry,
+    reference_entry,
+    reference_from_entry,
+    sighting_entry,
+    sighting_from_entry,
+    thing_from_entry,
+)
+from .fields import keyed, text
+from .json_text import dumped, parse_json
+
+VERSION = 1
+
+
+def read_cell(path: str | Path) -> Cell:
+    """Read a cell document. Raises DocumentError with the file and the path of the field."""
+    file = Path(path)
+    try:
+        return cell_from_document(parse_json(file), file.parent)
+    except (DocumentError, InvalidValue) as error:
+        if str(error).startswith(str(file)):
+            raise
+        raise DocumentError(f"{file}: {error}") from None
+
+
+def write_cell(cell: Cell, path: str | Path) -> None:
+    """Write a cell document whole or not at all; picture names become relative to it."""
+    file = Path(path)
+    document = document_from_cell(cell, file.parent)
+    with atomic_path(file) as temporary:
+        temporary.write_text(dumped(document), encoding="utf-8")
+
+
+def cell_from_document(document: Any, folder: Path) -> Cell:
+    """A Cell from parsed JSON whose relative paths start at `folder`. Raises DocumentError."""
+    fields = keyed(
+        document, "", ("monocell", "camera"), ("picture", "sightings", "references", "objects")
+    )
+    version = fields.whole("monocell")
+    if not 1 <= version <= VERSION:
+        raise DocumentError(f"monocell: version {version} is unknown; this reads up to {VERSION}")
+    things = [
+        thing_from_entry(entry, f"objects[{i}]") for i, entry in enumerate(fields.items("objects"))
+    ]
+    references = [
+        reference_from_entry(entry, f"references[{i}]")
+        for i, entry in enumerate(fields.items("references"))
+    ]
+    _check_names(references, things)
+    return Cell(
+        camera=_camera(fields.raw("camera"), folder),
+        picture=fields.text("picture") if fields.has("picture") else None,
+        sightings=tuple(
+            sighting_from_entry(entry, f"sightings[{i}]")
+            for i, entry in enumerate(fields.items("sightings"))
+        ),
+        references=tuple(references),
+        objects=tuple(thing for thing in things if isinstance(thing, Primitive)),
+        sketches=tuple(thing for thing in things if isinstance(thing, Sketch)),
+        folder=folder,
+    )
+
+
+def document_from_cell(cell: Cell, folder: Path) -> dict[str, Any]:
+    """The JSON value of a cell for a document standing in `folder`."""
+    document: dict[str, Any] = {"monocell": VERSION, "camera": camera_entry(cell.camera)}
+    if cell.picture is not None:
+        document["picture"] = _moved(cell.picture, cell.folder, folder)
+    document["sightings"] = [
+        sighting_entry(sighting) | {"picture": _moved(sighting.picture, cell.folder, folder)}
+        for sighting in cell.sightings
+    ]
+    document["references"] = [reference_entry(reference) for reference in cell.references]
+    document["objects"] = [object_entry(thing) for thing in cell.things]
+    return document
+
+
+def _check_names(references: list[Reference], things: list[Primitive | Sketch]) -> None:
+    """Here things still stand in the document's order, which messages count by."""
+    try:
+        check_names(references, things)
+    except InvalidValue as error:
+        raise DocumentError(str(error)) from None
+
+
+def _camera(value: Any, folder: Path) -> Any:
+    if not isinstance(value, str):
+        return camera_from_entry(value)
+    # imported here: the formats of others bring OpenCV and YAML, which most documents do not need
+    from .camera_file import read_camera
+
+    return read_camera(folder / text(value, "camera"))
+
+
+def _moved(name: str, old_folder: Path, new_folder: Path) -> str:
+    """A relative picture name as seen from the new folder; an absolute one stays."""
+    if Path(name).is_absolute() or old_folder.resolve() == new_folder.resolve():
+        return name
+    return Path(os.path.relpath((old_folder / name).resolve(), new_folder.resolve())).as_posix()

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Picture files to arrays: decoded as they are, checked against the camera, in linear light."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import PictureError
+from ..intrinsics import Intrinsics
+
+Picture = NDArray[Any]
+Light = NDArray[np.float32]
+
+
+def read_picture(path: str | Path, intrinsics: Intrinsics | None = None) -> Picture:
+    """Read a picture as (H, W, 3) blue, green, red, 8 or 16 bits, exactly as it is stored.
+
+    A phone's rotation tag is ignored: intrinsics belong to the pixels as the sensor gave them.
+    Raises PictureError when the file is missing, truncated, no picture, or not of the size that
+    `intrinsics` state.
+    """
+    file = Path(path)
+    try:
+        data = np.fromfile(file, dtype=np.uint8)
+    except FileNotFoundError:
+        raise PictureError(f"{file}: there is no such picture") from None
+    except OSError as error:
+        raise PictureError(f"{file}: can't be read ({error.strerror})") from None
+    if _truncated(data):
+        raise PictureError(f"{file}: the picture breaks off after {len(data)} bytes; copy it again")
+    flags = cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH | cv2.IMREAD_IGNORE_ORIENTATION
+    picture = cv2.imdecode(data, flags) if len(data) else None
+    if picture is None or picture.dtype not in (np.uint8, np.uint16):
+        raise PictureError(f"{file}: {len(data)} bytes that are no picture OpenCV can read")
+    pixels: Picture = np.asarray(picture)
+    if intrinsics is not None:
+        check_size(pixels, intrinsics, str(file))
+    return pixels
+
+
+def check_size(picture: Picture, intrinsics: Intrinsics, name: str) -> None:
+    """Raises PictureError when a picture is not of the camera's size."""
+    height, width = picture.shape[:2]
+    if (width, height) != (intrinsics.width, intrinsics.height):
+        raise PictureError(
+            f"{name}: the picture is {width} x {height} px, the camera file says "
+            f"{intrinsics.width} x {intrinsics.height}; use the camera file of this picture"
+        )
+
+
+def linear_light(picture: Picture) -> Light:
+    """sRGB-encoded pixels to amounts of light from 0 to 1, float32 (IEC 61966-2-1).
+
+    Edges are measured on light, because blur mixes light: on encoded values every edge moves
+    towards its dark side.
+    """
+    table = _decoding(picture.dtype.name)
+    if picture.dtype == np.uint8:
+        return np.asarray(cv2.LUT(picture, table), dtype=np.float32)
+    return table[picture]
+
+
+@cache
+def _decoding(dtype: str) -> Light:
+    top = np.iinfo(dtype).max
+    encoded = np.arange(top + 1) / top
+    light = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    return light.astype(np.float32)
+
+
+def _truncated(data: NDArray[np.uint8]) -> bool:
+    """Whether a JPEG or PNG lacks its end: OpenCV fills the missing rows with grey."""
+    content = data.tobytes()
+    if content.startswith(b"\xff\xd8"):
+        # the end marker can't occur inside the scan, but can in a thumbnail before it
+        return content.find(b"\xff\xd9", _scan_start(content)) < 0
+    return content.startswith(b"\x89PNG\r\n\x1a\n") and b"IEND" not in content[-64:]
+
+
+def _scan_start(jpeg: bytes) -> int:
+    """Where the first scan of a JPEG begins, past the header's segments."""
+    at = 2
+    while at + 4 <= len(jpeg) and jpeg[at] == 0xFF and jpeg[at + 1] != 0xDA:
+        at += 2 + int.from_bytes(jpeg[at + 2 : at + 4], "big")
+    return at

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures from a distorted lens to a perfect one and back, through exact maps."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..errors import InvalidValue, PictureError
+from ..intrinsics import Intrinsics
+
+# OpenCV's remap addresses pixels by signed 16-bit numbers
+LONGEST_SIDE = 32766
+# a flat picture of a wide lens grows without bounds; eight times the pixels is where help ends
+LARGEST_GROWTH = 8.0
+# each distorted pixel is the mean of so many by so many points
+POINTS_PER_SIDE = 4
+
+
+def undistorted_picture(picture: NDArray[Any], intrinsics: Intrinsics) -> NDArray[Any]:
+    """The picture (H, W, 3) as a perfect lens of the same K would have taken it, in its own type.
+
+    `result(intrinsics.undistorted().project(p)) == picture(intrinsics.project(p))`, interpolated
+    bicubically (sharp, without the ringing that Lanczos leaves along black edges). Black where the
+    lens saw nothing. Raises PictureError when the size is not the camera's.
+    """
+    _check_size(picture, intrinsics)
+    if intrinsics.distortion.model == "none":
+        return picture.copy()
+    rays = intrinsics.undistorted().rays(_pixel_centres(intrinsics))
+    return _remapped(picture, _as_map(intrinsics.project(rays), intrinsics), cv2.INTER_CUBIC)
+
+
+def pinhole_around(intrinsics: Intrinsics, finer: float) -> Intrinsics:
+    """A perfect lens that sees all that a distorted one sees, `finer` times as fine.
+
+    Its pixels subtend at most `1 / finer` of a distorted pixel at the principal point. Raises
+    InvalidValue when the field of view is too wide for a flat picture.
+    """
+    rays = intrinsics.rays(_rim(intrinsics))
+    forward = rays[:, 2] > 0.05
+    plane = rays[forward, :2] / rays[forward, 2:]
+    if len(plane) < 4 or (not forward.all() and np.isfinite(rays).all()):
+        raise InvalidValue("the lens sees 174 degrees or more, which no flat picture can hold")
+    low, high = plane.min(axis=0), plane.max(axis=0)
+    focal = np.array([intrinsics.fx, intrinsics.fy]) * finer
+    # a pixel of margin on each side feeds the interpolation at the rim
+    width, height = (int(n) for n in np.ceil((high - low) * focal) + 3)
+    given = intrinsics.width * intrinsics.height * finer**2
+    if max(width, height) > LONGEST_SIDE or width * height > LARGEST_GROWTH * given:
+        raise InvalidValue(
+            f"a flat picture of this lens needs {width} x {height} px, more than "
+            f"{LARGEST_GROWTH:g} times the distorted one; its field of view is too wide"
+        )
+    cx, cy = 1.0 - low * focal
+    return Intrinsics(width, height, float(focal[0]), float(focal[1]), cx, cy)
+
+
+def distorted_picture(
+    perfect: NDArray[np.float32], pinhole: Intrinsics, intrinsics: Intrinsics
+) -> NDArray[np.float32]:
+    """What the lens of `intrinsics` makes of a finer picture (h, w, 3) by `pinhole`, (H, W, 3).
+
+    Each pixel is the mean over its own area, as a sensor takes it: give linear light. Pixels that
+    no ray reaches are black.
+    """
+    _check_size(perfect, pinhole)
+    centres = pinhole.project(intrinsics.rays(_pixel_centres(intrinsics)))
+    grid = centres.reshape(intrinsics.height, intrinsics.width, 2)
+    # inside a pixel the map is as good as linear
+    down, right = np.gradient(grid, axis=(0, 1))
+    steps = (np.arange(POINTS_PER_SIDE) + 0.5) / POINTS_PER_SIDE - 0.5
+    total = np.zeros((*grid.shape[:2], 3), np.float32)
+    for dv in steps:
+        for du in steps:
+            points = grid + du * right + dv * down
+            total += _remapped(perfect, _as_map(points, intrinsics), cv2.INTER_LINEAR)
+    return total / np.float32(POINTS_PER_SIDE**2)
+
+
+def _check_size(picture: NDArray[Any], intrinsics: Intrinsics) -> None:
+    expected = (intrinsics.height, intrinsics.width, 3)
+    if picture.shape != expected:
+        raise PictureError(
+            f"the picture has shape {picture.shape}, the camera takes {expected}; "
+            "is the camera file for another resolution?"
+        )
+    if max(expected) > LONGEST_SIDE:
+        raise PictureError(f"{max(expected)} px on one side is more than {LONGEST_SIDE}; scale it")
+
+
+def _pixel_centres(intrinsics: Intrinsics) -> Array:
+    v, u = np.mgrid[: intrinsics.height, : intrinsics.width]
+    return np.stack([u.ravel(), v.ravel()], axis=1).astype(float)
+
+
+def _rim(intrinsics: Intrinsics) -> Array:
+    """Points (N, 2) along the outer border of the picture, one per pixel."""
+    u = np.arange(intrinsics.width + 1) - 0.5
+    v = np.arange(intrinsics.height + 1) - 0.5
+    sides = [np.stack([u, np.full_like(u, at)], 1) for at in (v[0], v[-1])]
+    sides += [np.stack([np.full_like(v, at), v], 1) for at in (u[0], u[-1])]
+    return np.concatenate(sides)
+
+
+def _as_map(pixels: Array, intrinsics: Intrinsics) -> NDArray[np.float32]:
+    """Pixels (H*W, 2) or (H, W, 2) as OpenCV's map; no ray becomes a place outside any picture."""
+    shaped = pixels.reshape(intrinsics.height, intrinsics.width, 2)
+    return np.nan_to_num(shaped, nan=-1e4).astype(np.float32)
+
+
+def _remapped(picture: NDArray[Any], place: NDArray[np.float32], how: int) -> NDArray[Any]:
+    black = (0.0, 0.0, 0.0)
+    nowhere = np.zeros(0, np.float32)
+    return np.asarray(cv2.remap(picture, place, nowhere, how, None, cv2.BORDER_CONSTANT, black))
