@@ -27,6 +27,8 @@ def frozen(value: ArrayLike, shape: tuple[int | None, ...], name: str) -> Array:
         wanted = "(" + ", ".join("N" if n is None else str(n) for n in shape) + ")"
         raise InvalidValue(f"{name}: expected shape {wanted}, got {array.shape}")
     if not np.isfinite(array).all():
+        if array.ndim == 0:
+            raise InvalidValue(f"{name}: must be finite, got {float(array)}")
         where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
         raise InvalidValue(f"{name}: the number at {where} is {array[where]}, not finite")
     array.setflags(write=False)

@@ -44,6 +44,18 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         temporary.unlink(missing_ok=True)
 
 
+def made_folder(path: str | Path) -> Path:
+    """The folder, made with its parents if it is not there. Raises DocumentError where it can't."""
+    folder = Path(path)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DocumentError(
+            f"{folder}: can't be made a folder ({error.strerror}); name another"
+        ) from None
+    return folder
+
+
 def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)

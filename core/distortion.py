@@ -18,6 +18,8 @@ from .errors import InvalidValue
 from .radial import RadialProfile
 
 COEFFICIENTS = {"none": 0, "plumb_bob": 5, "rational_polynomial": 8, "equidistant": 4}
+# rational models of wide lenses reach thousands; far beyond, powers overflow
+LARGEST_COEFFICIENT = 1e9
 NEWTON_STEPS = 25
 # Newton's error squares itself: after a step this small less than 1e-9 px is left
 CONVERGED = 3e-7
@@ -51,6 +53,11 @@ class Distortion:
             raise InvalidValue(
                 f"distortion.coefficients: {self.model} has {COEFFICIENTS[self.model]}, "
                 f"got {len(coefficients)}"
+            )
+        if len(coefficients) and np.abs(coefficients).max() > LARGEST_COEFFICIENT:
+            raise InvalidValue(
+                f"distortion.coefficients: {np.abs(coefficients).max():g} is no lens's; "
+                "calibrate the lens again"
             )
         object.__setattr__(self, "coefficients", coefficients)
 

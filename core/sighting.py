@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from .arrays import Array, frozen, positive
 from .errors import InvalidValue
 
+# what a camera can see and a robot or a crane can hold; squares of less or more lose their digits
+LEAST_RADIUS, MOST_RADIUS = 1e-5, 1e3
+
 
 @dataclass(frozen=True, eq=False)
 class SphereSighting:
@@ -25,6 +28,11 @@ class SphereSighting:
     def __post_init__(self) -> None:
         object.__setattr__(self, "center_world", frozen(self.center_world, (3,), "center"))
         object.__setattr__(self, "radius", positive(self.radius, "radius"))
+        if not LEAST_RADIUS <= self.radius <= MOST_RADIUS:
+            raise InvalidValue(
+                f"radius: {self.radius:g} m is no ball's; give metres, "
+                f"{LEAST_RADIUS:g} to {MOST_RADIUS:g}"
+            )
         if self.window is not None:
             x, y, width, height = frozen(self.window, (4,), "window").tolist()
             if width < 8 or height < 8:

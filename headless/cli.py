@@ -9,8 +9,10 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
+import re
 import sys
 from collections.abc import Sequence
+from typing import Any, NoReturn
 
 from ..core.errors import MonocellError
 
@@ -27,6 +29,20 @@ VERBS = {
     "compare": "errors of pose and of every object against the truth",
     "robot": "the robot scene in PyBullet: collision check, path planning, picture",
 }
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """argparse with refusals of one line, as all of ours are, that reads -1e-3 as a number."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        # before Python 3.13 argparse takes a negative number with an exponent for an option
+        self._negative_number_matcher = re.compile(r"-\.?\d.*")
+
+    def error(self, message: str) -> NoReturn:
+        """What is wrong and where the usage stands; exit 2."""
+        told = " ".join(message.split())
+        self.exit(INPUT_AT_FAULT, f"{self.prog}: {told}; see {self.prog} --help\n")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -55,7 +71,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     from ..core.version import VERSION
 
-    parser = argparse.ArgumentParser(
+    parser = OneLineParser(
         prog="monocell",
         description="One picture and the robot's joint angles in, a metric environment out.",
         epilog="Exit codes: 0 done, 2 the input is at fault, 3 solved but not to be trusted.",

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from argparse import ArgumentTypeError
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
     from .robot.demo_motion import BlockedMotion
     from .robot.planning import Plan
     from .robot.scene import RobotScene
+
+
+LARGEST_SEED = 2**31 - 1
 
 
 def solve_motion(
@@ -87,6 +91,13 @@ def draw(scene: RobotScene, motion: BlockedMotion, plan: Plan, path: Path) -> No
 
     straight = np.linspace(motion.start, motion.goal, 30)
     draw_scene(scene, path, joints=motion.start, path=plan.poses(), blocked=straight)
+
+
+def seed_from(text: str) -> int:
+    """A seed as given on the command line, for argparse: NumPy and OMPL take 32 bits, unsigned."""
+    if not text.isdecimal() or int(text) > LARGEST_SEED:
+        raise ArgumentTypeError(f"must be a whole number from 0 to {LARGEST_SEED}, got {text!r}")
+    return int(text)
 
 
 def joints_from(values: Sequence[float] | None) -> Array | None:

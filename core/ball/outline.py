@@ -30,6 +30,9 @@ FLOOR_PIXELS = 0.02
 # neighbouring profiles share pixels: their scatter understates the outline's error by this factor,
 # found on synthetic balls with noise of known size
 SHARED_PIXELS = 1.3
+# what hides or outshines a part of an outline also pulls the edges beside it, unseen: sigmas grow
+# by this much for the whole outline, in proportion to the part; found on synthetic fingers
+HIDDEN_PART = 1.5
 # edges belong to the outline when they lie in this band (pixels, or share of the radius: real balls
 # are not round to more than half a percent), though they were looked for in a much wider one
 BELONGS_PIXELS, BELONGS_SHARE = 0.6, 0.005
@@ -260,7 +263,9 @@ class OutlineMeter:
         cut = 1 - float(measured.inside.mean())
         refuse_little(coverage, cut)
         inflation = correlation_inflation(held.residual_pixels, used)
-        sigma = sigma * scale * SHARED_PIXELS * np.sqrt(inflation)
+        hidden = 1 - float(used.sum()) / len(measured.inside)
+        careful = SHARED_PIXELS * (1 + HIDDEN_PART * hidden)
+        sigma = sigma * scale * careful * np.sqrt(inflation)
         rms = core_sigma(held.residual_pixels[used])
         refuse_clutter(evidence, rms, size)
         return SphereOutline(

@@ -205,7 +205,7 @@ def _solve(
     reports = sighting_reports(sightings, outlines, failures, found, consistent)
     return _calibration(
         camera.placed(pose, covariance), method, reports, geometry, consistent
-    ), pose
+    ), consistent.fit.camera_from_world
 
 
 def _refuse_too_few_found(

@@ -40,8 +40,13 @@ def read_cell(path: str | Path) -> Cell:
 
 
 def write_cell(cell: Cell, path: str | Path) -> None:
-    """Write a cell document whole or not at all; picture names become relative to it."""
+    """Write a cell document whole or not at all; picture names become relative to it.
+
+    Raises DocumentError for another ending than .json: a slip would cost the picture named there.
+    """
     file = Path(path)
+    if file.suffix.lower() != ".json":
+        raise DocumentError(f"{file}: a cell document ends in .json, such as cell.cell.json")
     document = document_from_cell(cell, file.parent)
     with atomic_path(file) as temporary:
         temporary.write_text(dumped(document), encoding="utf-8")

@@ -90,9 +90,14 @@ def joined(where: str, key: str) -> str:
 
 
 def text(value: Any, where: str) -> str:
-    """A string that is not empty. Raises DocumentError."""
+    """A string that is not empty and can be written and be a file's name. Raises DocumentError."""
     if not isinstance(value, str) or not value:
         raise DocumentError(f"{where}: expected a text, got {shown(value)}")
+    # JSON can spell a zero character and half a character pair; no file and no UTF-8 can
+    if any(c == "\0" or "\ud800" <= c <= "\udfff" for c in value):
+        raise DocumentError(
+            f"{where}: {shown(ascii(value))} holds a character that can't be written"
+        )
     return value
 
 

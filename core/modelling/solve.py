@@ -9,7 +9,7 @@ from dataclasses import replace
 from ..arrays import positive
 from ..camera import Camera
 from ..cell import Cell, Reference
-from ..errors import PickError
+from ..errors import InvalidValue, PickError
 from ..primitives import Primitive
 from ..reference import ReferencePlane
 from ..sketch import Sketch
@@ -21,6 +21,10 @@ Solver = Callable[[Camera, Sketch, ReferencePlane, float], Modelled]
 SOLVERS: dict[str, Solver] = {"box": solve_box, "cylinder": solve_cylinder}
 
 
+# wide enough for any hand and any noiseless test; beyond, squares overflow
+LEAST_SIGMA, MOST_SIGMA = 1e-9, 1e4
+
+
 def solve_sketch(
     camera: Camera, sketch: Sketch, reference: Reference, pick_sigma_pixels: float = 1.0
 ) -> Modelled:
@@ -30,9 +34,14 @@ def solve_sketch(
     and `camera.covariance`.
 
     Raises PickError for picks that can't mean the object, naming object and pick, or a reference
-    that is not a plane; NoPose without a camera pose.
+    that is not a plane; InvalidValue for an impossible pick noise; NoPose without a camera pose.
     """
     sigma = positive(pick_sigma_pixels, "pick_sigma_pixels")
+    if not LEAST_SIGMA <= sigma <= MOST_SIGMA:
+        raise InvalidValue(
+            f"pick_sigma_pixels: {sigma:g} px is no error of a hand; "
+            f"give {LEAST_SIGMA:g} to {MOST_SIGMA:g}"
+        )
     if not isinstance(reference, ReferencePlane):
         raise PickError(
             f"{sketch.name}: a {sketch.kind} stands on a plane, and {reference.name} is a line; "

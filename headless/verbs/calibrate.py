@@ -40,6 +40,10 @@ def run(args: argparse.Namespace) -> int:
     else:
         tell(calibration)
     warn(calibration.warnings)
+    if args.out is not None and not failed and any(thing.picks for thing in cell.objects):
+        warn(
+            ["the objects were modelled with the camera as it was before: run monocell model again"]
+        )
     return NOT_TRUSTED if failed else DONE
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.comparison import Comparison, ObjectError, compare_cells
+from ...core.comparison import Comparison, compare_cells
 from ...core.document.cell_file import read_cell
 from ..told import print_json, table, warn
 
@@ -84,13 +84,3 @@ def _one_sided(comparison: Comparison) -> list[str]:
     return [f"{name} of the truth is not in the cell" for name in comparison.missing] + [
         f"{name} of the cell is not in the truth" for name in comparison.surplus
     ]
-
-
-def worst_ratio(error: ObjectError) -> float:
-    """The largest error of an object over its stated sigma; NaN where none is stated."""
-    if error.position_sigma is None or error.size_sigma is None:
-        return float("nan")
-    errors = np.concatenate([error.position, error.sizes])
-    sigmas = np.concatenate([error.position_sigma, error.size_sigma])
-    known = sigmas > 0
-    return float(np.abs(errors[known] / sigmas[known]).max())

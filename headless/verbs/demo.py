@@ -5,19 +5,27 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from ...core.atomic import made_folder
 from ...core.calibration.calibrate import Calibration
 from ...core.cell import Cell
 from ...core.comparison import Comparison, compare_cells
 from ..blender import require_blender
 from ..cli import DONE, NOT_TRUSTED
+from ..robot_job import seed_from
 from ..told import progress, warn
+
+if TYPE_CHECKING:
+    from ..robot.planning import Plan
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The verb's own arguments."""
     parser.add_argument("out", type=Path, help="folder for all files, made if it is not there")
-    parser.add_argument("--seed", type=int, default=1, help="of the picks' error and the planner")
+    parser.add_argument(
+        "--seed", type=seed_from, default=1, help="of the picks' error and the planner"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -25,21 +33,22 @@ def run(args: argparse.Namespace) -> int:
     require_blender()
     from ..demo import steps
 
-    args.out.mkdir(parents=True, exist_ok=True)
-    truth = steps.make_pictures(args.out)
+    truth = steps.make_pictures(made_folder(args.out))
     document = steps.hand_over(truth, args.seed)
     cell, calibration, modelled = steps.estimate(document)
     pictures = steps.draw_overlays(cell, calibration, args.out)
-    environment, motion_told, free, robot_picture = _use(cell, args)
+    environment, motion_told, plan, robot_picture = _use(cell, args)
     comparison = compare_cells(truth, cell)
-    warnings = [*calibration.warnings, *(w for m in modelled for w in m.warnings)]
+    warnings = [*calibration.warnings, *(w for m in modelled for w in m.warnings), *plan.warnings]
     _tell(calibration, comparison, motion_told)
     warn(warnings)
-    _name_files(args.out, [document, *pictures, environment, _side_view(cell, args), robot_picture])
-    return DONE if calibration.verdict != "failed" and free else NOT_TRUSTED
+    photographs = [args.out / s.picture for s in truth.sightings] + [args.out / steps.PICTURE]
+    drawn = [*pictures, _side_view(cell, args), robot_picture]
+    _name_files([*photographs, args.out / steps.TRUTH, document, environment, *drawn])
+    return DONE if calibration.verdict != "failed" and plan.walk.free else NOT_TRUSTED
 
 
-def _use(cell: Cell, args: argparse.Namespace) -> tuple[Path, str, bool, Path]:
+def _use(cell: Cell, args: argparse.Namespace) -> tuple[Path, str, Plan, Path]:
     """Export the environment, load it as a planner would, find a way round."""
     from ...scene.gltf import export_gltf
     from .. import robot_job
@@ -60,7 +69,7 @@ def _use(cell: Cell, args: argparse.Namespace) -> tuple[Path, str, bool, Path]:
     ):
         motion, plan = robot_job.solve_motion(scene, None, None, args.seed)
         robot_job.draw(scene, motion, plan, picture)
-    return path, robot_job.told(motion, plan), plan.walk.free, picture
+    return path, robot_job.told(motion, plan), plan, picture
 
 
 def _side_view(cell: Cell, args: argparse.Namespace) -> Path:
@@ -92,10 +101,8 @@ def _tell(calibration: Calibration, comparison: Comparison, motion_told: str) ->
     print(motion_told)
 
 
-def _name_files(out: Path, files: list[Path]) -> None:
-    from ..demo.steps import TRUTH
-
+def _name_files(files: list[Path]) -> None:
     print()
     print("files")
-    for path in [out / TRUTH, *files]:
+    for path in files:
         print(f"  {path}")

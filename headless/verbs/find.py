@@ -11,6 +11,7 @@ import numpy as np
 
 from ...core.ball.outline import SphereOutline
 from ...core.document.camera_file import read_camera
+from ...core.errors import InvalidValue
 from ...core.intrinsics import Intrinsics
 from ...core.sighting import SphereSighting
 from ..told import millimetres, point_told, print_json, warn
@@ -37,6 +38,8 @@ def run(args: argparse.Namespace) -> int:
     from ...core.ball.find import find_sphere
     from ...core.picture.pictures import read_picture
 
+    if args.overlay is not None and args.overlay.resolve() == args.picture.resolve():
+        raise InvalidValue(f"{args.overlay}: the overlay would replace the picture; name another")
     # the same checks as in a document: radius and window are refused with their numbers
     asked = SphereSighting(str(args.picture), np.zeros(3), args.radius, _window(args.window))
     intrinsics = read_camera(args.camera).intrinsics

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...core.atomic import made_folder
 from ...core.cell import Cell
 from ...core.document.cell_file import read_cell, write_cell
 from ...core.errors import InvalidValue
@@ -17,6 +18,7 @@ from ..told import progress
 
 BALL_COLOR = np.array([0.06, 0.42, 0.05])
 TRUTH = "truth.cell.json"
+MOST_SAMPLES = 65536
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,16 +32,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Render the cell's picture and each sighting's, and write the truth with their names."""
-    if args.samples < 1:
-        raise InvalidValue(f"--samples: must be 1 or more, got {args.samples}")
+    if not 1 <= args.samples <= MOST_SAMPLES:
+        raise InvalidValue(
+            f"--samples: must be 1 or more, up to {MOST_SAMPLES}, got {args.samples}"
+        )
     cell = read_cell(args.cell)
     cell.camera.pose  # noqa: B018  a camera without pose is refused before anything is made
-    require_blender()
-    args.out.mkdir(parents=True, exist_ok=True)
+    if args.out.resolve() == cell.folder.resolve():
+        raise InvalidValue(f"{args.out}: is the cell's own folder, with its pictures; name another")
     truth = _named(cell, args.out)
+    _refuse_shared_names(truth)
+    require_blender()
+    made_folder(args.out)
     _render_all(truth, args.samples)
     write_cell(truth, args.out / TRUTH)
-    for name in dict.fromkeys([truth.picture or "", *(s.picture for s in truth.sightings)]):
+    for name in (truth.picture or "", *(s.picture for s in truth.sightings)):
         print(args.out / name)
     print(args.out / TRUTH)
     return 0
@@ -55,6 +62,17 @@ def _named(cell: Cell, out: Path) -> Cell:
         ),
         folder=out,
     )
+
+
+def _refuse_shared_names(truth: Cell) -> None:
+    """One file can't hold two renderings: the last would stand for all that name it."""
+    names = [truth.picture, *(sighting.picture for sighting in truth.sightings)]
+    for name in names:
+        if names.count(name) > 1:
+            raise InvalidValue(
+                f"{name}: {names.count(name)} pictures of the cell would have this name; "
+                "give each sighting a picture of its own"
+            )
 
 
 def _render_all(truth: Cell, samples: int) -> None:

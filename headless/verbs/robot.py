@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ...core.errors import InvalidValue
 from ..cli import DONE, NOT_TRUSTED
-from ..robot_job import document, draw, joints_from, solve_motion, told
+from ..robot_job import document, draw, joints_from, seed_from, solve_motion, told
 from ..told import print_json, warn
 
 
@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--flange", help="the URDF link that is the flange (default: the last)")
     parser.add_argument("--start", type=float, nargs="+", metavar="Q", help="joint angles, radians")
     parser.add_argument("--goal", type=float, nargs="+", metavar="Q", help="joint angles, radians")
-    parser.add_argument("--seed", type=int, default=1, help="of the planner (default 1)")
+    parser.add_argument("--seed", type=seed_from, default=1, help="of the planner (default 1)")
     parser.add_argument("--picture", type=Path, help="write a PNG of the scene with the path")
     parser.add_argument("--json", action="store_true", help="print JSON")
 
@@ -28,6 +28,8 @@ def run(args: argparse.Namespace) -> int:
     """Load, check the straight motion, plan, tell, draw."""
     if (args.start is None) != (args.goal is None):
         raise InvalidValue("give --start and --goal together, or neither")
+    if args.picture is not None and args.picture.suffix.lower() != ".png":
+        raise InvalidValue(f"{args.picture}: the picture is a PNG; name it .png")
     from ..robot.arm import Arm
     from ..robot.glb import read_environment
     from ..robot.scene import RobotScene

@@ -9,6 +9,7 @@ import sys
 
 import pytest
 import synthetic_cell
+from edited_job import state_of
 from monocell.headless.cli import main
 
 
@@ -49,3 +50,20 @@ def shell(job):
         return done.returncode, done.stdout, done.stderr
 
     return as_process
+
+
+@pytest.fixture
+def refused(run, job):
+    """Run a verb that must be refused; returns its one line."""
+
+    def check(*arguments):
+        before = state_of(job)
+        code, out, err = run(*arguments)
+        assert code == 2, (code, out, err)
+        assert out == ""
+        assert err.count("\n") == 1, err
+        assert err.startswith(f"monocell {arguments[0]}: ")
+        assert state_of(job) == before
+        return err
+
+    return check
