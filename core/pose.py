@@ -15,6 +15,8 @@ from .rotation import hat, rotation_from_vector, vector_from_rotation
 # a rotation typed with four decimals is accepted and cleaned; anything worse is a mistake
 TYPED_ROTATION_TOLERANCE = 1e-3
 CLEAN_ROTATION_TOLERANCE = 1e-12
+# the earth's circumference: beyond it numbers lose their micrometres, and no robot stands there
+FARTHEST = 4e7
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +39,13 @@ class Pose:
     def __post_init__(self) -> None:
         rotation = frozen(self.rotation, (3, 3), "rotation")
         object.__setattr__(self, "rotation", _orthonormal(rotation))
-        object.__setattr__(self, "translation", frozen(self.translation, (3,), "translation"))
+        translation = frozen(self.translation, (3,), "translation")
+        if np.abs(translation).max() > FARTHEST:
+            raise InvalidValue(
+                f"translation: {np.abs(translation).max():.3g} m is farther than any cell "
+                f"({FARTHEST:g} m); positions are in metres"
+            )
+        object.__setattr__(self, "translation", translation)
 
     @staticmethod
     def identity() -> Pose:

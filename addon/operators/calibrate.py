@@ -40,11 +40,14 @@ class Calibrate(NeedsCell, bpy.types.Operator):
         """Calibrate, then let document and Blender's camera take the pose."""
         from ...core.calibration.calibrate import calibrate_cell
 
+        given = bare_cell(context.scene)
         with _hourglass(context.window):
-            cell, calibration = calibrate_cell(bare_cell(context.scene))
-        write_scene(context.scene, cell, report_of(calibration))
+            cell, calibration = calibrate_cell(given)
+        failed = calibration.verdict == "failed"
+        # a pose that can't be trusted is reported, with every outline, but nothing is built on it
+        write_scene(context.scene, given if failed else cell, report_of(calibration))
         put_camera(context.scene)
-        level = "INFO" if calibration.verdict == "good" else "WARNING"
+        level = {"good": "INFO", "weak": "WARNING", "failed": "ERROR"}[calibration.verdict]
         self.report(
             {level}, f"Calibration {calibration.verdict}: {calibration.rms_pixels:.2f} px rms"
         )

@@ -142,7 +142,7 @@ def _searched(
         except SphereNotFound:
             continue
         if rough.agreement >= LEAST_AGREEMENT:
-            found.append((_evidence(rough.agreement, circle), rough))
+            found.append((_evidence(rough.agreement, circle.radius * rough.visible), rough))
     distinct: list[RoughSphere] = []
     for _, rough in sorted(found, key=lambda pair: -pair[0]):
         if not any(_same(rough.centre_camera, kept.centre_camera, radius) for kept in distinct):
@@ -178,17 +178,17 @@ def _measured(
     if refusal is not None:
         raise type(refusal)(f"no ball found {where}: {refusal}")
     raise SphereNotFound(
-        f"no ball found {where}: no outline of one stands out; give a window around it, "
-        "or a picture with more contrast"
+        f"no ball found {where}: no outline of one stands out; give a window around it, or a "
+        "picture that shows all of it with more contrast"
     )
 
 
-def _evidence(share: float, circle: Circle) -> float:
+def _evidence(share: float, radius_pixels: float) -> float:
     """How much speaks for an outline of which `share` is seen, in sigmas over chance.
 
     Clutter agrees with a part of any circle; the longer the outline, the less that is by chance.
     """
-    independent = min(2 * np.pi * circle.radius, INDEPENDENT_EDGES)
+    independent = min(2 * np.pi * radius_pixels, INDEPENDENT_EDGES)
     return float((share - SHARE_BY_CHANCE) * np.sqrt(independent))
 
 

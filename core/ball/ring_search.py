@@ -25,6 +25,8 @@ PROFILES, SAMPLES = 72, 41
 EDGES_PER_PROFILE = 3
 TRIALS = 120
 AGREEMENT_PIXELS = 0.5
+# of a circle of which less than this is in the picture nothing can be said
+LEAST_VISIBLE = 0.3
 
 
 @dataclass(frozen=True)
@@ -46,10 +48,14 @@ WIDE, NARROW = Span(0.68, 1.36, 16.0, 0.03), Span(0.84, 1.18, 48.0, 0.012)
 
 @dataclass(frozen=True, eq=False)
 class RoughSphere:
-    """A sphere's centre (3,) in the camera frame; `agreement`: the share of profiles behind it."""
+    """A sphere's centre (3,) in the camera frame, and the share of profiles that agree with it.
+
+    Only those within the picture count, the share `visible` of all.
+    """
 
     centre_camera: Array
     agreement: float
+    visible: float
 
 
 class Pyramid:
@@ -102,7 +108,10 @@ def search_ring(
         within = np.abs(off) < tolerance
         if within.sum() < 6:
             raise SphereNotFound(f"edges around ({circle.u:.0f}, {circle.v:.0f}) form no outline")
-    return RoughSphere(centre, float(_votes(off[None], edges, tolerance)[0]) / PROFILES)
+    votes = float(_votes(off[None], edges, tolerance)[0])
+    # what lies outside the picture can't agree, but does not disagree either
+    visible = max(edges.visible, LEAST_VISIBLE)
+    return RoughSphere(centre, votes / (visible * PROFILES), visible)
 
 
 def circle_of(intrinsics: Intrinsics, centre_camera: Array, radius: float) -> Circle:
@@ -118,14 +127,18 @@ def circle_of(intrinsics: Intrinsics, centre_camera: Array, radius: float) -> Ci
 
 @dataclass(frozen=True, eq=False)
 class _Edges:
-    """Edges along the profiles: pixels (M, 2), profile (M,), and weights (M,), 1 the strongest."""
+    """Edges along the profiles: pixels (M, 2), profile (M,), and weights (M,), 1 the strongest.
+
+    `visible` is the share of the profiles that cross the circle within the picture.
+    """
 
     pixels: Array
     profile: NDArray[np.intp]
     weights: Array
+    visible: float
 
     def chosen(self, which: Mask) -> _Edges:
-        return _Edges(self.pixels[which], self.profile[which], self.weights[which])
+        return _Edges(self.pixels[which], self.profile[which], self.weights[which], self.visible)
 
 
 def _votes(off: Array, edges: _Edges, tolerance: float) -> Array:
@@ -176,7 +189,9 @@ def _edges_around(pyramid: Pyramid, circle: Circle, span: Span) -> _Edges:
     strength = np.take_along_axis(peak, order, axis=1)
     profile, rank = np.nonzero(strength > 4.0)
     weights = strength[profile, rank] / strength[profile, 0]
-    return _Edges(at[profile, order[profile, rank] + 1], profile, weights)
+    crossing = seen[:, int(np.argmin(np.abs(reach - circle.radius)))]
+    visible = float(crossing.mean())
+    return _Edges(at[profile, order[profile, rank] + 1], profile, weights, visible)
 
 
 def _best_consensus(

@@ -31,26 +31,29 @@ def verdict_of(
 ) -> tuple[Verdict, tuple[str, ...]]:
     """The verdict, and what to tell the user; `sightings` are pairs of status and reason."""
     rejected = [reason for status, reason in sightings if status == "rejected"]
+    doubtful = [reason for status, reason in sightings if status == "doubtful"]
     kept = len(sightings) - len(rejected)
-    warnings: list[str] = []
-    if rejected:
-        warnings.append(f"{len(rejected)} of {len(sightings)} sightings rejected: {rejected[0]}")
-    warnings += _doubts(camera, fit)
+    doubts = _doubts(camera, fit)
     if kept < 4:
-        warnings.append("three sightings leave nothing to check them with; add a fourth")
+        doubts.append("three sightings leave nothing to check them with; add a fourth")
     # any three positions have a mirror image that fits as well: against two that object, they lose
     lonely = kept < 4 and len(rejected) >= 2
     if lonely:
-        warnings.append(
-            f"only {kept} of {len(sightings)} sightings agree, too few against the rest"
-        )
+        doubts.append(f"only {kept} of {len(sightings)} sightings agree, too few against the rest")
+    warnings = (
+        *_counted("rejected", rejected, len(sightings)),
+        *_counted("doubtful", doubtful, len(sightings)),
+        *doubts,
+    )
     off = float(np.sqrt(np.mean(np.concatenate(fit.residuals_pixels) ** 2)))
     if (fit.misfit > FAILED_MISFIT and off > FAILED_OFF_PIXELS) or kept < 3 or lonely:
-        return "failed", tuple(warnings)
-    few = kept < 4 or len(rejected) * 2 > kept
-    return ("weak" if warnings[len(rejected) > 0 :] or few or geometry.warnings() else "good"), (
-        tuple(warnings)
-    )
+        return "failed", warnings
+    few = 2 * len(rejected) > kept or 2 * len(doubtful) > kept
+    return ("weak" if doubts or few or geometry.warnings() else "good"), warnings
+
+
+def _counted(status: str, reasons: Sequence[str], count: int) -> tuple[str, ...]:
+    return (f"{len(reasons)} of {count} sightings {status}: {reasons[0]}",) if reasons else ()
 
 
 def _doubts(camera: Camera, fit: JointFit) -> list[str]:

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from ..errors import PictureError
 from ..intrinsics import Intrinsics
 
+# some programs append data of their own after a PNG's end
+LONGEST_TRAILER = 1 << 16
 Picture = NDArray[Any]
 Light = NDArray[np.float32]
 
@@ -80,7 +82,7 @@ def _truncated(data: NDArray[np.uint8]) -> bool:
     if content.startswith(b"\xff\xd8"):
         # the end marker can't occur inside the scan, but can in a thumbnail before it
         return content.find(b"\xff\xd9", _scan_start(content)) < 0
-    return content.startswith(b"\x89PNG\r\n\x1a\n") and b"IEND" not in content[-64:]
+    return content.startswith(b"\x89PNG\r\n\x1a\n") and b"IEND" not in content[-LONGEST_TRAILER:]
 
 
 def _scan_start(jpeg: bytes) -> int:

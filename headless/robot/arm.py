@@ -18,7 +18,7 @@ from ...core.errors import DocumentError, InvalidValue, MissingPackage
 from ...core.mesh_part import MeshPart
 from ...core.pose import Pose
 from ...core.rotation import hat
-from .bullet import chatter_to_stderr, pose_of, position_and_quaternion, pybullet
+from .bullet import chatter_off, pose_of, position_and_quaternion, pybullet
 from .visuals import Visual, visuals
 
 BASE = -1
@@ -217,7 +217,7 @@ class Arm:
             raise DocumentError(f"{self.urdf}: there is no such URDF file")
         position, quaternion = position_and_quaternion(self.world_from_base)
         try:
-            with chatter_to_stderr():
+            with chatter_off():
                 return int(
                     self._p.loadURDF(
                         str(self.urdf),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""PyBullet, quietly: the module and worlds of its own, with its chatter off our standard output."""
+"""PyBullet, quietly: the module and worlds of its own, without its chatter."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ...core.pose import Pose
 
 def pybullet() -> Any:
     """The pybullet module. Raises MissingPackage when it is not installed."""
-    with chatter_to_stderr():
+    with chatter_off():
         try:
             import pybullet as module
         except ImportError:
@@ -29,21 +29,27 @@ def pybullet() -> Any:
 
 
 @contextmanager
-def chatter_to_stderr() -> Iterator[None]:
-    """Send what C code prints to standard output to standard error, where messages belong.
+def chatter_off() -> Iterator[None]:
+    """Drop what C code prints on standard output and standard error.
 
-    PyBullet prints a banner on import and warnings on loading, past Python's own `sys.stdout`.
+    PyBullet prints a banner on import and lines of its own on loading, past Python's `sys.stdout`;
+    what went wrong is told by our own errors, in one line.
     """
     sys.stdout.flush()
-    kept = os.dup(1)
-    os.dup2(2, 1)
+    sys.stderr.flush()
+    kept = os.dup(1), os.dup(2)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.dup2(nowhere, 2)
     try:
         yield
     finally:
-        # C keeps its own buffer: empty it while it still leads to standard error
+        # C keeps its own buffer: empty it while it still leads nowhere
         ctypes.CDLL("ucrtbase" if os.name == "nt" else None).fflush(None)
-        os.dup2(kept, 1)
-        os.close(kept)
+        os.dup2(kept[0], 1)
+        os.dup2(kept[1], 2)
+        for handle in (*kept, nowhere):
+            os.close(handle)
 
 
 def pose_of(position: tuple[float, ...], quaternion_xyzw: tuple[float, ...]) -> Pose:

@@ -95,6 +95,7 @@ def tell(calibration: Calibration) -> None:
         )
     else:
         print(f"1 sigma   unknown: the baseline {calibration.method} states none")
+        print("          what follows is of the joint fit that the baseline is held against")
     print(
         f"outlines  {calibration.rms_pixels:.2f} px rms, edge bias "
         f"{calibration.edge_bias_pixels:+.3f} ± {calibration.edge_bias_sigma_pixels:.3f} px"

@@ -31,6 +31,7 @@ def run(args: argparse.Namespace) -> int:
     if args.picture is not None and args.picture.suffix.lower() != ".png":
         raise InvalidValue(f"{args.picture}: the picture is a PNG; name it .png")
     from ..robot.arm import Arm
+    from ..robot.floors import floor_of
     from ..robot.glb import read_environment
     from ..robot.scene import RobotScene
 
@@ -38,7 +39,12 @@ def run(args: argparse.Namespace) -> int:
     warn(environment.warnings)
     with (
         Arm(args.urdf, flange=args.flange) as arm,
-        RobotScene(arm, environment.objects, meshes=environment.meshes) as scene,
+        RobotScene(
+            arm,
+            environment.objects,
+            meshes=environment.meshes,
+            table=floor_of(environment.extras),
+        ) as scene,
     ):
         ends = joints_from(args.start), joints_from(args.goal)
         motion, plan = solve_motion(scene, *ends, args.seed)
