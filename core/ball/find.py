@@ -22,6 +22,8 @@ SEARCHED, SEARCHED_IN_WINDOW, NARROWED, MEASURED = 24, 8, 5, 4
 CLEAR_EVIDENCE, CLEAR_COVERAGE = 8.0, 0.45
 # in a window the strongest circles are tried before all are compared
 TRIED_AT_ONCE, CLEAR_AGREEMENT = 2, 0.6
+# up to this radius the first look is as fine as the pixels
+FINE_ENOUGH = 32.0
 LEAST_AGREEMENT, SHARE_BY_CHANCE = 0.33, 0.25
 INDEPENDENT_EDGES = 300
 # around the rough outline, as a share of its radius and in pixels, what the fine measurement sees
@@ -106,9 +108,10 @@ def _first_clear(
     """The first circle that turns out to be a clear ball at once, as in a good window it does."""
     for circle in circles:
         try:
-            wide = search_ring(pyramid, intrinsics, circle, radius, WIDE)
-            better = circle_of(intrinsics, wide.centre_camera, radius)
-            rough = search_ring(pyramid, intrinsics, better, radius, NARROW)
+            rough = search_ring(pyramid, intrinsics, circle, radius, WIDE)
+            if circle.radius > FINE_ENOUGH:
+                better = circle_of(intrinsics, rough.centre_camera, radius)
+                rough = search_ring(pyramid, intrinsics, better, radius, NARROW)
             if rough.agreement < CLEAR_AGREEMENT:
                 continue
             outline = measure_sphere(picture, intrinsics, radius, rough.centre_camera)

@@ -143,6 +143,20 @@ def test_calibration_without_pictures_is_refused_and_keeps_the_document(addon, b
     assert scene.monocell_cell.text == text
 
 
+def test_a_calibration_that_failed_is_told_and_moves_no_camera(addon, raw_bench, tmp_path):
+    document = json.loads(raw_bench.read_text())
+    for sighting in document["sightings"]:
+        # the mistake of a robot whose y axis points the other way
+        sighting["center"][1] *= -1
+    path = raw_bench.parent / "mirrored.cell.json"
+    path.write_text(json.dumps(document))
+    opened(addon, path)
+    with pytest.raises(RuntimeError, match="Calibration failed"):
+        addon.ops.monocell.calibrate()
+    assert saved(addon, tmp_path / "x.cell.json").camera.camera_from_world is None
+    assert not addon.ops.monocell.add_box.poll()
+
+
 def test_undo_takes_back_object_and_calibration_at_once(addon, raw_bench, tmp_path):
     opened(addon, raw_bench)
     addon.ops.ed.undo_push(message="opened")
