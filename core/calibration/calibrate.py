@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
-from ..arrays import Array
 from ..ball.outline import SphereOutline
 from ..camera import Camera
 from ..cell import Cell
@@ -18,14 +17,14 @@ from ..intrinsics import Intrinsics
 from ..picture.pictures import Picture, read_picture
 from ..pose import Pose
 from ..sighting import SphereSighting
-from .frames import pose_from_triads
+from .baselines import PoseCandidate, baseline_poses
 from .pose_search import ConsistentFit, SeenBall, fit_consistent
 from .position_geometry import PositionGeometry, check_positions
 from .sighting_report import SightingReport, robust_rms, sighting_reports
 from .verdict import Verdict, verdict_of
 
-METHODS = ("joint", "frames")
-Method = Literal["joint", "frames"]
+METHODS = ("joint", "frames", "p3p", "pnp")
+Method = Literal["joint", "frames", "p3p", "pnp"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +33,8 @@ class Calibration:
 
     `misfit` is the factor by which the sightings disagree beyond their own noise (1: not at all);
     the covariance already carries it. `verdict` is good, weak or failed, `warnings` say why.
+    For a baseline, `candidates` are all its answers, the closest first, and `camera` stands at
+    that; all else is of the joint fit that it is held against.
     """
 
     camera: Camera
@@ -46,6 +47,7 @@ class Calibration:
     edge_bias_pixels: float
     edge_bias_sigma_pixels: float
     misfit: float
+    candidates: tuple[PoseCandidate, ...] = ()
 
     @property
     def count_used(self) -> int:
@@ -198,14 +200,15 @@ def _solve(
     geometry = check_positions(
         [ball.centre_world for ball, use in zip(balls, consistent.used, strict=True) if use]
     )
-    pose = consistent.fit.camera_from_world
-    covariance: Array | None = consistent.fit.covariance
-    if method == "frames":
-        pose, covariance = _pose_by_frames(balls, consistent), None
     reports = sighting_reports(sightings, outlines, failures, found, consistent)
-    return _calibration(
-        camera.placed(pose, covariance), method, reports, geometry, consistent
-    ), consistent.fit.camera_from_world
+    joint = camera.placed(consistent.fit.camera_from_world, consistent.fit.covariance)
+    calibration = _calibration(joint, method, reports, geometry, consistent)
+    if method != "joint":
+        used = [ball for ball, use in zip(balls, consistent.used, strict=True) if use]
+        candidates = baseline_poses(method, used)
+        baseline = camera.placed(candidates[0].camera_from_world)
+        calibration = replace(calibration, camera=baseline, candidates=candidates)
+    return calibration, joint.pose
 
 
 def _refuse_too_few_found(
@@ -216,20 +219,6 @@ def _refuse_too_few_found(
         f"the ball was found in {found} of {len(sightings)} sightings, three are needed; "
         f"{sightings[first].picture}: {failures[first]}"
     )
-
-
-def _pose_by_frames(balls: Sequence[SeenBall], consistent: ConsistentFit) -> Pose:
-    """The paper's pose from the first three balls that span the widest triangle."""
-    used = np.flatnonzero(consistent.used)
-    world = np.array([balls[i].centre_world for i in used])
-    camera = np.array([balls[i].outline.centre_camera for i in used])
-    n = len(used)
-    triples = [(a, b, c) for a in range(n) for b in range(a + 1, n) for c in range(b + 1, n)]
-    areas = [
-        np.linalg.norm(np.cross(world[b] - world[a], world[c] - world[a])) for a, b, c in triples
-    ]
-    widest = list(triples[int(np.argmax(areas))])
-    return pose_from_triads(world[widest], camera[widest])
 
 
 def _calibration(

@@ -126,11 +126,11 @@ def _fitted(balls: Sequence[SeenBall], used: Mask, start: Pose) -> ConsistentFit
     fit = fit_pose([ball.observation for ball in chosen], start)
     misfits = np.full(len(balls), np.nan)
     misfits[used] = fit.sighting_misfits
-    off = np.array([_off_pixels(ball, fit.camera_from_world) for ball in balls])
+    off = np.array([off_pixels(ball, fit.camera_from_world) for ball in balls])
     return ConsistentFit(fit, used, off, misfits)
 
 
-def _off_pixels(ball: SeenBall, pose: Pose) -> float:
+def off_pixels(ball: SeenBall, pose: Pose) -> float:
     """How far, across the picture, a found ball is from where the pose puts it."""
     predicted, found = pose.apply(ball.centre_world), ball.outline.centre_camera
     angle = np.arctan2(np.linalg.norm(np.cross(predicted, found)), predicted @ found)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...core.calibration.calibrate import METHODS, Calibration, calibrate_cell
 from ...core.document.cell_file import read_cell, write_cell
-from ...core.document.entries import camera_entry
+from ...core.document.entries import camera_entry, pose_entry
 from ..cli import DONE, NOT_TRUSTED
 from ..told import millimetres, point_told, print_json, table, warn
 
@@ -24,7 +24,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--method",
         choices=METHODS,
         default="joint",
-        help="joint: all outlines at once (default); frames: the paper's three-point triads",
+        help="joint: all outlines at once (default); baselines on the balls' centres: frames (the "
+        "paper's triads), p3p (its depths from distances, every candidate), pnp (SQPnP)",
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
 
@@ -68,6 +69,13 @@ def document(calibration: Calibration) -> dict[str, Any]:
             "off_line": calibration.geometry.off_line,
             "off_plane": calibration.geometry.off_plane,
         },
+        "candidates": [
+            {
+                "camera_from_world": pose_entry(candidate.camera_from_world),
+                "off_pixels": candidate.off_pixels,
+            }
+            for candidate in calibration.candidates
+        ],
         "sightings": [
             {
                 "picture": report.picture,
@@ -95,7 +103,10 @@ def tell(calibration: Calibration) -> None:
         )
     else:
         print(f"1 sigma   unknown: the baseline {calibration.method} states none")
-        print("          what follows is of the joint fit that the baseline is held against")
+        for candidate in calibration.candidates:
+            centre = candidate.camera_from_world.inverse().translation
+            print(f"candidate {point_told(centre)}, balls {candidate.off_pixels:.2f} px off")
+        print("what follows is of the joint fit that the baseline is held against")
     print(
         f"outlines  {calibration.rms_pixels:.2f} px rms, edge bias "
         f"{calibration.edge_bias_pixels:+.3f} ± {calibration.edge_bias_sigma_pixels:.3f} px"

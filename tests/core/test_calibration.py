@@ -186,8 +186,20 @@ def test_the_paper_s_frames_run_and_are_worse(rig):
     )
     assert baseline > 3 * error
     assert baseline < 0.3
-    with pytest.raises(InvalidValue, match="'guess' is none of joint, frames"):
+    with pytest.raises(InvalidValue, match="'guess' is none of joint, frames, p3p, pnp"):
         calibrate_cell(rig, "guess")
+
+
+@pytest.mark.parametrize("method", ["p3p", "pnp"])
+def test_baselines_on_directions_come_near_and_list_their_candidates(rig, method):
+    _, calibration = calibrate_cell(rig, method)
+    truth = POSE.inverse().translation
+    assert np.linalg.norm(calibration.camera.centre_world - truth) < 0.1
+    assert calibration.camera.covariance is None
+    offs = [candidate.off_pixels for candidate in calibration.candidates]
+    assert offs == sorted(offs)
+    assert 1 <= len(offs) <= (4 if method == "p3p" else 1)
+    assert offs[0] < 3.0
 
 
 def test_measured_outlines_give_the_same_pose_as_their_pictures(rig):
