@@ -9,7 +9,7 @@ OPENCV := opencv-python-headless==4.11.0.86
 RUAMEL := ruamel.yaml==0.19.1
 
 # Blender's own builder of extensions, which its Python module brings along
-FIND_BUILDER := import bpy, pathlib; print(*pathlib.Path(bpy.__file__).parent.glob("*/scripts/addons_core/bl_pkg/cli/blender_ext.py"))
+BUILDER := $(VENV)/lib/python*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py
 
 .PHONY: demo test lint zip clean
 
@@ -33,8 +33,7 @@ wheels/downloaded: blender_manifest.toml
 
 zip: $(VENV)/installed wheels/downloaded
 	mkdir -p dist
-	$(RUN)/python "$$($(RUN)/python -c '$(FIND_BUILDER)')" build --source-dir . \
-	  --output-filepath dist/monocell.zip --valid-tags ""
+	$(RUN)/python $(BUILDER) build --source-dir . --output-filepath dist/monocell.zip --valid-tags ""
 
 $(VENV)/installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
