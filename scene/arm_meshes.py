@@ -45,5 +45,11 @@ def _import(part: MeshPart) -> None:
     kind = part.path.suffix.lower()
     if kind not in readers:
         raise DocumentError(f"{part.path}: {kind or 'no ending'} is neither .obj nor .stl")
-    with quiet_stdout():
-        readers[kind](filepath=str(part.path), **AXES)
+    try:
+        with quiet_stdout():
+            readers[kind](filepath=str(part.path), **AXES)
+    except RuntimeError:
+        # newer Blenders raise where older ones import nothing
+        raise DocumentError(
+            f"{part.path}: Blender can't read this mesh; is the file whole?"
+        ) from None
