@@ -16,8 +16,15 @@ from ..picture.pictures import Light
 from ..robust import beside_runs, core_sigma, correlation_inflation, middle_of, tukey_weights
 from .downhill import lowest
 from .limb import LimbEdges, find_limb, sample_offsets
-from .outline_checks import LARGEST_CUT, cut_refusal, doubts_of, refuse_clutter, refuse_little
-from .sphere import OutlineRays, Tangency, tangency
+from .outline_checks import (
+    LARGEST_CUT,
+    cut_refusal,
+    doubts_of,
+    refuse_clutter,
+    refuse_little,
+    refuse_small,
+)
+from .sphere import OutlineRays, centre_covariance, tangency
 
 MOST_POINTS, FEWEST_POINTS = 400, 48
 BLURS = (0.4, 0.53, 0.7, 0.93, 1.25, 1.7, 2.3, 3.1)
@@ -137,6 +144,7 @@ class OutlineMeter:
 
     def _profiles(self, centre: Array, reach: float, most: int = MOST_POINTS) -> _Profiles:
         size = self._size_pixels(centre)
+        refuse_small(size)
         reach = min(reach, 0.6 * size)
         count = int(np.clip(2 * np.pi * size, FEWEST_POINTS, most))
         places = OutlineRays.around(self._intrinsics, centre, self._radius, count)
@@ -270,7 +278,7 @@ class OutlineMeter:
         refuse_clutter(evidence, rms, size)
         return SphereOutline(
             centre,
-            _covariance(held, sigma, used),
+            centre_covariance(held, sigma, used),
             self._radius,
             outline.pixels,
             sigma,
@@ -288,9 +296,3 @@ class OutlineMeter:
 def _noise_to_contrast(measured: _Measured) -> float:
     contrast = np.sqrt(middle_of(measured.edges.gains) / 10)
     return float(measured.noise / max(contrast, 1e-6))
-
-
-def _covariance(held: Tangency, sigma: Array, used: Mask) -> Array:
-    rows = held.by_centre[used] / sigma[used, None]
-    covariance: Array = np.linalg.inv(rows.T @ rows)
-    return covariance

@@ -7,8 +7,9 @@ from ..errors import SphereCut, SphereNotFound
 
 LEAST_COVERAGE, DOUBTFUL_COVERAGE = 0.35, 0.5
 LARGEST_CUT = 0.25
+SMALLEST_PIXELS = 4.0
 # sigmas over chance that an outline has to stand out by, and by which it may be loose
-LEAST_EVIDENCE, CLEAR_EVIDENCE, LOOSE_SHARE = 4.0, 6.5, 0.04
+LEAST_EVIDENCE, CLEAR_EVIDENCE, LOOSE_SHARE = 4.5, 6.5, 0.04
 
 
 def cut_refusal(cut: float) -> SphereCut:
@@ -27,6 +28,18 @@ def refuse_little(coverage: float, cut: float) -> None:
         raise SphereNotFound(
             f"only {100 * coverage:.0f} % of the outline has an edge where a ball has one "
             f"(at least {100 * LEAST_COVERAGE:.0f} % is needed)"
+        )
+
+
+def refuse_small(size: float) -> None:
+    """Raises SphereNotFound for an outline of fewer pixels radius than profiles can be laid across.
+
+    A fit that follows stray edges shrinks to nothing, and ends here as well.
+    """
+    if size < SMALLEST_PIXELS:
+        raise SphereNotFound(
+            f"the edges lead to a ball of {size:.1f} px radius, too small to be measured; "
+            f"{SMALLEST_PIXELS:g} px are needed"
         )
 
 

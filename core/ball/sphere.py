@@ -146,6 +146,13 @@ def tangency(outline: OutlineRays, centre_camera: ArrayLike, radius: float) -> T
     return Tangency(angle * per_pixel, by_centre, by_radius, gradient * per_pixel[:, None])
 
 
+def centre_covariance(held: Tangency, sigma_pixels: Array, used: Mask) -> Array:
+    """Of the centre (3, 3), metres, from the used points' sigmas (N,) along their normals."""
+    rows = held.by_centre[used] / sigma_pixels[used, None]
+    covariance: Array = np.linalg.inv(rows.T @ rows)
+    return covariance
+
+
 def sphere_at(
     intrinsics: Intrinsics, pixel: ArrayLike, radius_pixels: float, radius: float
 ) -> Array:

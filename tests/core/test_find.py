@@ -222,3 +222,15 @@ def _beside_the_left_border(share_cut):
     u = size * np.cos(np.pi * share_cut) - 0.5
     ray = LENS.rays(np.array([[u, 180.0]]))[0]
     return ray * depth, size
+
+
+def test_a_guess_that_leads_nowhere_is_refused_and_never_breaks():
+    lens = Intrinsics(120, 120, 1200.0, 1200.0, 60.0, 60.0)
+    rng = np.random.default_rng(5)
+    for _ in range(40):
+        picture = rng.integers(0, 255, (120, 120, 3)).astype(np.uint8)
+        rough = np.array([0.0, 0.0, 0.04 * 1200 / rng.uniform(2.0, 14.0)])
+        try:
+            measure_sphere(picture, lens, 0.04, rough)
+        except SphereNotFound as refusal:
+            assert "\n" not in str(refusal)
