@@ -21,6 +21,7 @@ from .outline_checks import (
     cut_refusal,
     doubts_of,
     refuse_clutter,
+    refuse_few,
     refuse_little,
     refuse_small,
 )
@@ -267,6 +268,7 @@ class OutlineMeter:
         scale = max(core_sigma(scaled), self._out_of_round(sigma, centre))
         used = tukey_weights(scaled, scale) > 0.1
         used &= ~beside_runs(~used)
+        refuse_few(int(used.sum()), len(used))
         size = self._size_pixels(centre)
         cut = 1 - float(measured.inside.mean())
         refuse_little(coverage, cut)

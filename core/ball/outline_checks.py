@@ -7,7 +7,7 @@ from ..errors import SphereCut, SphereNotFound
 
 LEAST_COVERAGE, DOUBTFUL_COVERAGE = 0.35, 0.5
 LARGEST_CUT = 0.25
-SMALLEST_PIXELS = 4.0
+SMALLEST_PIXELS, FEWEST_USED = 4.0, 8
 # sigmas over chance that an outline has to stand out by, and by which it may be loose
 LEAST_EVIDENCE, CLEAR_EVIDENCE, LOOSE_SHARE = 4.5, 6.5, 0.04
 
@@ -40,6 +40,14 @@ def refuse_small(size: float) -> None:
         raise SphereNotFound(
             f"the edges lead to a ball of {size:.1f} px radius, too small to be measured; "
             f"{SMALLEST_PIXELS:g} px are needed"
+        )
+
+
+def refuse_few(used: int, of: int) -> None:
+    """Raises SphereNotFound when too few points of an outline agree with each other."""
+    if used < FEWEST_USED:
+        raise SphereNotFound(
+            f"only {used} of {of} edges lie on one outline, {FEWEST_USED} are needed"
         )
 
 
