@@ -10,7 +10,6 @@ with Stage(cell) as stage:
 from __future__ import annotations
 
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import bpy
@@ -19,6 +18,7 @@ from mathutils import Matrix
 
 from ..core.arrays import Array
 from ..core.camera import Camera
+from ..core.closing import Closing
 from ..core.mesh_part import MeshPart
 from ..core.primitives import Primitive
 from .arm_meshes import import_mesh
@@ -34,7 +34,7 @@ SAMPLES = 4
 BOUNCES = 1
 
 
-class Stage:
+class Stage(Closing):
     """A work cell in Blender. The user's own scenes are left alone; `close` takes all away."""
 
     def __init__(self, cell: WorkCell) -> None:
@@ -52,14 +52,6 @@ class Stage:
 
     def __enter__(self) -> Stage:
         return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def move(self, parts: tuple[MeshPart, ...], ball: Ball | None) -> None:
         """Put the arm and the ball elsewhere. Meshes are read from disk the first time only."""

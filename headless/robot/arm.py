@@ -7,13 +7,13 @@ import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...core.arrays import Array, frozen, positive
+from ...core.closing import Closing
 from ...core.errors import DocumentError, InvalidValue, MissingPackage
 from ...core.mesh_part import MeshPart
 from ...core.pose import Pose
@@ -48,7 +48,7 @@ class HeldBall:
             positive(self.stem_radius, "ball stem_radius")
 
 
-class Arm:
+class Arm(Closing):
     """An arm in a PyBullet world of its own; a context manager that ends that world.
 
     `joints` (n,) are the angles in radians (metres for sliding joints) of the moving joints between
@@ -86,14 +86,6 @@ class Arm:
 
     def __enter__(self) -> Arm:
         return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """End the PyBullet world; the mesh files written for primitive visuals go with it."""
@@ -181,7 +173,7 @@ class Arm:
         pointing: ArrayLike | None = None,
         rest: ArrayLike | None = None,
         seed: int = 0,
-        starts: int = 16,
+        starts: int = 48,
         accept: Callable[[Array], bool] | None = None,
     ) -> Array:
         """Joint angles (n,) within the limits that bring the flange to `target`; see `ik.reach`."""

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from types import TracebackType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...core.arrays import Array
+from ...core.closing import Closing
 from ...core.errors import InvalidValue
 from ...core.primitives import Box, Primitive
 from .arm import Arm
@@ -59,7 +59,7 @@ class Part:
     name: str
 
 
-class RobotScene:
+class RobotScene(Closing):
     """The arm with static obstacles; a context manager that takes the obstacles out again.
 
     `objects` become exact shapes, `meshes` their convex hulls. Links that no joint moves are held
@@ -94,14 +94,6 @@ class RobotScene:
 
     def __enter__(self) -> RobotScene:
         return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Take the obstacles and the ball out of the arm's world."""

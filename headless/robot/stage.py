@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import TracebackType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.arrays import Array
+from ...core.closing import Closing
 from ...core.mesh_part import MeshPart
 from ...core.pose import Pose
 from .bullet import position_and_quaternion, pybullet
@@ -67,7 +67,7 @@ def pixel_rays(view: View, width: int, height: int) -> Array:
     return np.stack([x, y, np.ones_like(x)], axis=-1)
 
 
-class Stage:
+class Stage(Closing):
     """A world of visual shapes; a context manager that ends it."""
 
     def __init__(self) -> None:
@@ -77,12 +77,8 @@ class Stage:
     def __enter__(self) -> Stage:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def close(self) -> None:
+        """End the PyBullet world."""
         self._p.disconnect(self._client)
 
     def add_mesh(self, mesh: WorldMesh) -> int:

@@ -260,3 +260,12 @@ def test_a_duplicate_in_blender_is_a_second_object(addon, bench, tmp_path):
     scene.monocell_cell.collection.objects.link(copy)
     names = [thing.name for thing in saved(addon, tmp_path / "x.cell.json").objects]
     assert names == ["box", "box.001"]
+
+
+def test_a_box_is_added_while_another_is_edited(addon, bench, tmp_path):
+    opened(addon, bench)
+    add(addon, "box", bench_cell.box_picks(), name="first")
+    addon.ops.object.mode_set(mode="EDIT")
+    assert add(addon, "box", bench_cell.box_picks(), name="second") == {"FINISHED"}
+    names = {thing.name for thing in saved(addon, tmp_path / "x.cell.json").objects}
+    assert {"first", "second"} <= names
