@@ -38,6 +38,14 @@ class DegeneratePositions(MonocellError):
     """The ball's positions lie on a line or in one place, which leaves the pose undetermined."""
 
 
+class BoardNotFound(MonocellError):
+    """No calibration board, or none fit to be measured, was found in a picture."""
+
+
+class TooFewPictures(MonocellError):
+    """Fewer pictures of a calibration board than a lens needs."""
+
+
 class PickError(MonocellError):
     """A picked pixel can't mean what it was picked for (above the horizon, behind the camera)."""
 

@@ -22,6 +22,7 @@ DONE, INPUT_AT_FAULT, NOT_TRUSTED = 0, 2, 3
 VERBS = {
     "demo": "the whole job on a synthetic cell, with errors against truth",
     "render": "pictures of a cell through Blender's Cycles, with exact truth beside them",
+    "lens": "a camera's intrinsics from pictures of a chessboard or ChArUco board",
     "find": "the ball in a picture: its centre in the camera frame with 1 sigma",
     "calibrate": "ball sightings to the camera's pose",
     "model": "picked pixels to metric objects",

@@ -1,34 +1,34 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Camera files to a Camera: our own JSON, ROS camera_info YAML, OpenCV FileStorage, by content."""
+"""Camera files to a Camera, told by their content, and back: a file a format in `cameras`."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from ..arrays import Array
+from ..atomic import atomic_path
 from ..camera import Camera
-from ..distortion import COEFFICIENTS, Distortion
 from ..errors import DocumentError, InvalidValue
 from ..intrinsics import Intrinsics
-from .entries import camera_from_entry
-from .fields import Fields, items, keyed, number
-from .json_text import parse_json
+from .cameras.colmap import camera_from_colmap, is_colmap
+from .cameras.fspy import camera_from_fspy, is_fspy
+from .cameras.kalibr import camera_from_kalibr, is_kalibr
+from .cameras.nerfstudio import camera_from_nerfstudio, is_nerfstudio
+from .cameras.opencv import camera_from_opencv, is_opencv_matrix, opencv_text
+from .cameras.ros import camera_from_ros, ros_text
+from .cameras.visp import camera_from_visp, is_visp
+from .entries import camera_entry, camera_from_entry
+from .json_text import dumped, parse_json
 
-# what the ROS message and calibration tools write beside what is read here
-ROS_KEYS = ("camera_name", "rectification_matrix", "projection_matrix", "header", "binning_x")
-ROS_MORE = ("binning_y", "roi")
-ROS_MODELS = {
-    "plumb_bob": "plumb_bob",
-    "rational_polynomial": "rational_polynomial",
-    "equidistant": "equidistant",
-    "fisheye": "equidistant",
-}
-MATRIX_NAMES = ("camera_matrix", "Camera_Matrix", "cameraMatrix", "K")
-COEFFICIENT_NAMES = ("distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "D")
-FORMS = "monocell JSON, ROS camera_info YAML or OpenCV FileStorage (.yml, .xml, .json)"
+FORMS = (
+    "monocell JSON, ROS camera_info YAML, OpenCV FileStorage (.yml, .xml, .json), Kalibr camchain, "
+    "COLMAP cameras.txt, fSpy JSON, ViSP XML, nerfstudio transforms.json"
+)
+# a picture given by mistake is not read to its end
+LONGEST = 1 << 24
+WRITERS: dict[str, Callable[[Intrinsics], str]] = {"ros": ros_text, "opencv": opencv_text}
+ENDINGS = {".json": "json", ".yaml": "ros", ".yml": "opencv"}
 
 
 def read_camera(path: str | Path) -> Camera:
@@ -37,158 +37,97 @@ def read_camera(path: str | Path) -> Camera:
     try:
         if file.suffix.lower() == ".json":
             return _from_json(file)
-        start = _beginning(file)
-        if start.startswith(("%YAML:1.0", "<?xml")) or "<opencv" in start:
-            return _from_opencv(file)
-        return _from_ros(_parse_yaml(file))
+        return _from_text(file, _text(file))
     except (DocumentError, InvalidValue) as error:
         if str(error).startswith(str(file)):
             raise
         raise DocumentError(f"{file}: {error}") from None
 
 
+def write_camera(camera: Camera, path: str | Path, form: str | None = None) -> None:
+    """Write a camera file whole or not at all, in every digit.
+
+    `form` is `json` (ours), `ros` (camera_info YAML) or `opencv` (FileStorage YAML); without it the
+    ending tells: .json, .yaml for ROS, .yml for OpenCV. Raises DocumentError for another ending,
+    and for a pose in a form that has no place for it.
+    """
+    file = Path(path)
+    form = check_camera_path(file, form)
+    if form == "json":
+        text = dumped(camera_entry(camera))
+    elif camera.camera_from_world is not None:
+        raise DocumentError(f"{file}: a {form} camera file can't hold the pose; write .json")
+    else:
+        text = WRITERS[form](camera.intrinsics)
+    with atomic_path(file) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def check_camera_path(path: str | Path, form: str | None = None) -> str:
+    """The form in which a camera is written to `path`. Raises DocumentError."""
+    file = Path(path)
+    if form is None:
+        form = ENDINGS.get(file.suffix.lower())
+        if form is None:
+            raise DocumentError(
+                f"{file}: a camera file ends in .json (monocell), .yaml (ROS) or .yml (OpenCV)"
+            )
+    if form not in ENDINGS.values():
+        raise DocumentError(f"{form!r} is no form of a camera file: json, ros or opencv")
+    # a JSON document is told by its ending when it is read
+    if (form == "json") != (file.suffix.lower() == ".json"):
+        raise DocumentError(f"{file}: a camera file of the form {form} can't end like this")
+    return form
+
+
 def _from_json(file: Path) -> Camera:
     document = parse_json(file)
-    if isinstance(document, dict) and any(_is_opencv_matrix(v) for v in document.values()):
-        return _from_opencv(file)
+    if isinstance(document, dict) and any(is_opencv_matrix(v) for v in document.values()):
+        return camera_from_opencv(file)
     if isinstance(document, dict) and "monocell" in document:
         return camera_from_entry(document.get("camera"))
+    if is_fspy(document):
+        return camera_from_fspy(document)
+    if is_nerfstudio(document):
+        return camera_from_nerfstudio(document)
     return camera_from_entry(document, "")
 
 
-def _is_opencv_matrix(value: Any) -> bool:
-    return isinstance(value, dict) and value.get("type_id") == "opencv-matrix"
+def _from_text(file: Path, text: str) -> Camera:
+    start = text[:200]
+    if start.startswith("<") and is_visp(text):
+        return camera_from_visp(text)
+    if start.startswith(("%YAML:1.0", "<?xml")) or "<opencv" in start:
+        return camera_from_opencv(file)
+    if is_colmap(text):
+        return camera_from_colmap(text)
+    document = _parse_yaml(file, text)
+    if is_kalibr(document):
+        return camera_from_kalibr(document)
+    if not isinstance(document, dict):
+        raise DocumentError(f"is none of {FORMS}")
+    return camera_from_ros(document)
 
 
-def _beginning(file: Path) -> str:
+def _text(file: Path) -> str:
     try:
         with file.open("rb") as stream:
-            return stream.read(200).decode("utf-8", errors="replace").lstrip("\ufeff \n\r\t")
+            data = stream.read(LONGEST)
     except FileNotFoundError:
         raise DocumentError(f"{file}: there is no such camera file") from None
     except OSError as error:
         raise DocumentError(f"{file}: can't be read ({error.strerror})") from None
+    return data.decode("utf-8", errors="replace").lstrip("\ufeff \n\r\t")
 
 
-def _parse_yaml(file: Path) -> Any:
+def _parse_yaml(file: Path, text: str) -> Any:
     from ruamel.yaml import YAML
     from ruamel.yaml.error import YAMLError
 
+    if "\ufffd" in text or "\0" in text:
+        raise DocumentError(f"{file}: is none of {FORMS} (not a text file)")
     try:
-        return YAML(typ="safe", pure=True).load(file.read_text(encoding="utf-8"))
-    except (YAMLError, UnicodeDecodeError) as error:
+        return YAML(typ="safe", pure=True).load(text)
+    except YAMLError as error:
         reason = " ".join(str(error).split())[:120]
         raise DocumentError(f"{file}: is none of {FORMS} ({reason})") from None
-
-
-def _from_ros(document: Any) -> Camera:
-    """ROS camera_info, as camera_calibration_parsers writes it."""
-    required = ("image_width", "image_height", "camera_matrix")
-    optional = ("distortion_model", "distortion_coefficients", *ROS_KEYS, *ROS_MORE)
-    if not isinstance(document, dict):
-        raise DocumentError(f"is none of {FORMS}")
-    fields = keyed(document, "", required, optional)
-    k = _ros_array(fields, "camera_matrix", 9).reshape(3, 3)
-    width, height = fields.whole("image_width"), fields.whole("image_height")
-    return Camera(_intrinsics(width, height, k, _ros_distortion(fields)))
-
-
-def _ros_distortion(fields: Fields) -> Distortion:
-    if not fields.has("distortion_coefficients"):
-        return Distortion()
-    name = fields.text("distortion_model") if fields.has("distortion_model") else "plumb_bob"
-    return _padded(_ros_model(name), _ros_array(fields, "distortion_coefficients", None))
-
-
-def _ros_model(name: str) -> str:
-    if name not in ROS_MODELS:
-        known = ", ".join(ROS_MODELS)
-        raise DocumentError(f"distortion_model: {name!r} is none of {known}")
-    return ROS_MODELS[name]
-
-
-def _ros_array(fields: Fields, key: str, length: int | None) -> Array:
-    where = fields.path(key)
-    inner = keyed(fields.raw(key), where, ("rows", "cols", "data"), ())
-    values = [
-        number(v, f"{where}.data[{i}]") for i, v in enumerate(items(inner.raw("data"), where))
-    ]
-    if length is not None and len(values) != length:
-        raise DocumentError(f"{where}.data: expected {length} numbers, got {len(values)}")
-    return np.array(values)
-
-
-def _from_opencv(file: Path) -> Camera:
-    """OpenCV FileStorage with the usual names: camera_matrix, distortion_coefficients, ..."""
-    storage = _opened(file)
-    sizes = [_node(storage, name) for name in ("image_width", "image_height")]
-    matrix = _node(storage, *MATRIX_NAMES)
-    if matrix is None or any(node is None for node in sizes):
-        raise DocumentError("needs image_width, image_height and camera_matrix")
-    width, height = (_opencv_whole(node) for node in sizes)
-    k = _opencv_array(matrix)
-    if k.shape != (3, 3):
-        raise DocumentError(f"{matrix.name()}: must be 3 x 3, got {k.shape}")
-    coefficients = _node(storage, *COEFFICIENT_NAMES)
-    if coefficients is None:
-        return Camera(_intrinsics(width, height, k, Distortion()))
-    values = _opencv_array(coefficients).ravel()
-    model = _opencv_model(_node(storage, "distortion_model"), values)
-    return Camera(_intrinsics(width, height, k, _padded(model, values)))
-
-
-def _opened(file: Path) -> Any:
-    import cv2
-
-    try:
-        return cv2.FileStorage(str(file), cv2.FILE_STORAGE_READ)
-    except (cv2.error, SystemError) as error:
-        # the binding wraps OpenCV's own error, which ends in `file.yml(3): what is wrong`
-        reason = " ".join(str(error.__cause__ or error).split()).rsplit("/", 1)[-1]
-        raise DocumentError(f"OpenCV can't read it ({reason.rstrip(chr(39))[:120]})") from None
-
-
-def _node(storage: Any, *names: str) -> Any:
-    found = (storage.getNode(name) for name in names)
-    return next((node for node in found if not node.empty()), None)
-
-
-def _opencv_whole(node: Any) -> int:
-    value = node.real() if node.isInt() or node.isReal() else node.string()
-    return Fields({node.name(): value}, "").whole(node.name())
-
-
-def _opencv_array(node: Any) -> Array:
-    import cv2
-
-    try:
-        return np.asarray(node.mat(), dtype=float)
-    except (cv2.error, SystemError, TypeError):
-        raise DocumentError(f"{node.name()}: expected a matrix of numbers") from None
-
-
-def _opencv_model(node: Any, values: Array) -> str:
-    if node is None:
-        return "plumb_bob" if len(values) <= 5 else "rational_polynomial"
-    return _ros_model(node.string() if node.isString() else "")
-
-
-def _padded(model: str, values: Array) -> Distortion:
-    """Files often leave out trailing zeros, or write more zeros than the model has."""
-    wanted = COEFFICIENTS[model]
-    if np.any(values[wanted:]):
-        raise DocumentError(
-            f"distortion_coefficients: {len(values)} numbers, but {model} has {wanted}; "
-            "thin-prism and tilt terms are not supported"
-        )
-    kept = np.zeros(wanted)
-    kept[: min(wanted, len(values))] = values[:wanted]
-    return (
-        Distortion("none") if not kept.any() and model != "equidistant" else Distortion(model, kept)
-    )
-
-
-def _intrinsics(width: int, height: int, k: Array, distortion: Distortion) -> Intrinsics:
-    if abs(k[0, 1]) > 1e-6 * abs(k[0, 0]):
-        raise DocumentError(f"camera_matrix: a skew of {k[0, 1]:g} px is not supported")
-    return Intrinsics(width, height, k[0, 0], k[1, 1], k[0, 2], k[1, 2], distortion)
