@@ -22,7 +22,7 @@ LONGEST_SIDE = 1000
 def seen_instead(picture: NDArray[Any], board: Board) -> str | None:
     """A sentence that names another board and how to ask for it, or None where none is seen."""
     grey = _small(grey_of(picture))
-    markers = _markers(grey)
+    markers = _markers(grey, board)
     if markers is not None:
         return _told_of_markers(*markers, board)
     size = _chessboard(grey, board)
@@ -52,11 +52,13 @@ def _told_of_markers(name: str, highest: int, board: Board) -> str | None:
     )
 
 
-def _markers(grey: Grey) -> tuple[str, int] | None:
+def _markers(grey: Grey, board: Board) -> tuple[str, int] | None:
     """The dictionary of which most markers are seen, and the highest number."""
     best: tuple[int, str, int] | None = None
-    # the smaller of two dictionaries that share their markers comes first and wins
-    for name, number in sorted(DICTIONARIES.items(), key=lambda one: one[1]):
+    asked = None if isinstance(board, Chessboard) else board.dictionary
+    # of dictionaries that share their markers the one asked for wins, then the smallest
+    ordered = sorted(DICTIONARIES.items(), key=lambda one: (one[0] != asked, one[1]))
+    for name, number in ordered:
         dictionary = cv2.aruco.getPredefinedDictionary(number)
         _, found, _ = cv2.aruco.ArucoDetector(dictionary).detectMarkers(grey)
         count = 0 if found is None else len(np.unique(found))

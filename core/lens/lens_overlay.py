@@ -22,7 +22,7 @@ HULL: Color = (226, 214, 200)
 # pixels of a picture's diagonal to one of line width, and to one of a capital letter
 DIAGONAL_PER_LINE, DIAGONAL_PER_CAPITAL = 1000.0, 110.0
 # the median residual is drawn as long as this part of the diagonal
-MEDIAN_ARROW = 0.008
+MEDIAN_ARROW = 0.012
 
 
 def draw_view(picture: NDArray[Any], fit: LensFit, i: int, gain: float) -> Picture:
@@ -68,7 +68,7 @@ def _draw(drawn: Picture, pixels: Array, residuals: Array, gain: float, halo: bo
         for start, end in zip(pixels, pixels + gain * residuals, strict=True):
             ends = (_place(start), _place(end))
             cv2.line(drawn, *ends, color, thickness, cv2.LINE_AA, SHIFT)
-    radius = round((1.5 if halo else 0.8) * width * (1 << SHIFT))
+    radius = round((2.2 if halo else 0.8) * width * (1 << SHIFT))
     for pixel in pixels:
         place = _place(pixel)
         cv2.circle(drawn, place, radius, HALO if halo else DOT, -1, cv2.LINE_AA, SHIFT)

@@ -24,6 +24,8 @@ FISHEYE_FOCALS = (0.9, 0.6, 0.42, 0.32, 0.26)
 # directions beyond it have no place on a flat image plane
 WIDEST = np.cos(np.radians(82))
 ROUGH_STEPS = 12
+# a start that leads this near in pixels needs no other beside it
+GOOD_START = 0.5
 FLAGS = {
     "none": cv2.CALIB_ZERO_TANGENT_DIST | cv2.CALIB_FIX_K1 | cv2.CALIB_FIX_K2 | cv2.CALIB_FIX_K3,
     "plumb_bob": 0,
@@ -37,12 +39,14 @@ def first_fit(views: Sequence[BoardView], size: tuple[int, int], model: str) -> 
     Raises NotConverged where no start leads to a lens that images every corner.
     """
     starts = _fisheye_starts(views, size) if model == "equidistant" else _flat(views, size, model)
-    fits = []
+    fits: list[LensFit] = []
     for start in starts:
         try:
             fits.append(fit_lens(start, steps=ROUGH_STEPS))
         except InvalidValue:
             continue
+        if fits[-1].rms_pixels < GOOD_START:
+            break
     if not fits:
         raise NotConverged(f"no {model} lens images all corners of all pictures; try another model")
     return fit_lens(min(fits, key=lambda fit: fit.rms_pixels))
@@ -85,11 +89,11 @@ def _flat(views: Sequence[BoardView], size: tuple[int, int], model: str) -> list
         )
     except cv2.error:
         return _guessed(views, size, model)
-    starts = _guessed(views, size, model, float(k[0, 0]))
+    starts = []
     # what OpenCV ends in may be no lens at all: then the plain starts are left
     with contextlib.suppress(InvalidValue):
         starts.append(_from_opencv(views, size, model, (k, found.ravel(), turned, moved)))
-    return starts
+    return [*starts, *_guessed(views, size, model, float(k[0, 0]))]
 
 
 def _from_opencv(

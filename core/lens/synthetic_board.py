@@ -80,10 +80,20 @@ def scattered_poses(
         facing = _facing(ray)
         place = Pose(np.eye(3), ray * distance * rng.uniform(0.75, 1.4))
         pose = place @ facing @ lean @ turn @ Pose(np.eye(3), -board.corners.mean(axis=0))
-        pixels = intrinsics.project(pose.apply(board.corners))
+        pixels = intrinsics.project(pose.apply(_rim(board)))
         if np.isfinite(pixels).all() and intrinsics.contains(pixels).all():
             poses.append(pose)
     return poses
+
+
+def _rim(board: Board) -> Array:
+    """The outer corners of the squares all round, (N, 3) on the board."""
+    columns, rows = board.squares
+    across = [(x, y) for x in range(columns + 1) for y in (0, rows)]
+    down = [(x, y) for x in (0, columns) for y in range(rows + 1)]
+    # the frame begins at the first inner corner
+    places = np.array([(x - 1, y - 1, 0) for x, y in (*across, *down)], dtype=float)
+    return places * board.square
 
 
 def _facing(ray: Array) -> Pose:

@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rendered boards: corners found to hundredths of a pixel, poor pictures named, the lens found."""
+
+from __future__ import annotations
+
+import re
+import zlib
+
+import cv2
+import numpy as np
+import pytest
+from board_views import LENSES
+from monocell.core.errors import (
+    BoardNotFound,
+    DocumentError,
+    InvalidValue,
+    PictureError,
+    TooFewPictures,
+)
+from monocell.core.lens.board import CharucoBoard, Chessboard, board_from_words
+from monocell.core.lens.board_print import page_millimetres, write_board
+from monocell.core.lens.calibrate_lens import calibrate_lens, pattern_told
+from monocell.core.lens.detection import find_board, seen_pattern
+from monocell.core.lens.drawing import board_picture
+from monocell.core.lens.lens_overlay import draw_coverage, draw_view, residual_gain
+from monocell.core.lens.parameters import parameters_of
+from monocell.core.lens.synthetic_board import (
+    BoardPhotographer,
+    photograph_boards,
+    scattered_poses,
+)
+
+CHESS = Chessboard(9, 6, 0.025)
+CHARUCO = CharucoBoard(8, 6, 0.03, 0.021, "DICT_5X5_100")
+LENS = LENSES["plumb_bob"]
+
+
+def shot(board, count, seed, lens=LENS, **how):
+    rng = np.random.default_rng(seed)
+    poses = scattered_poses(lens, board, count, rng)
+    return poses, photograph_boards(lens, board, poses, BoardPhotographer(**how))
+
+
+@pytest.fixture(scope="module")
+def chess():
+    """Nine pictures of a chessboard, by name."""
+    _, pictures = shot(CHESS, 9, 11)
+    return {f"{i}.png": picture for i, picture in enumerate(pictures)}
+
+
+@pytest.fixture(scope="module")
+def calibration(chess):
+    return calibrate_lens(list(chess), chess.__getitem__, CHESS)
+
+
+def off_pixels(view, pose, lens=LENS):
+    """Seen minus true; a chessboard seen upside down is the same chessboard."""
+    truth = lens.project(pose.apply(view.points))
+    turned = lens.project(pose.apply(view.points[::-1]))
+    return min((view.pixels - t for t in (truth, turned)), key=lambda off: np.abs(off).max())
+
+
+@pytest.mark.parametrize("board", [CHESS, CHARUCO], ids=["chessboard", "charuco"])
+def test_corners_are_found_without_bias(board):
+    poses, pictures = shot(board, 3, 2)
+    off = np.concatenate(
+        [
+            off_pixels(find_board(picture, board, "a"), pose)
+            for pose, picture in zip(poses, pictures, strict=True)
+        ]
+    )
+    # OpenCV's own ChArUco corners are half a pixel off before 4.13
+    assert np.abs(off.mean(axis=0)).max() < 0.015
+    assert off.std() < 0.05
+    assert np.abs(off).max() < 0.25
+
+
+def test_the_blur_told_is_that_of_the_picture():
+    for blur in (0.8, 2.0):
+        _, (picture,) = shot(CHESS, 1, 2, blur_pixels=blur)
+        # the pixel's own width comes on top
+        assert abs(find_board(picture, CHESS, "a").blur_pixels - np.hypot(blur, 0.3)) < 0.3
+
+
+def test_a_large_picture_is_searched_small_and_measured_large():
+    _, (picture,) = shot(CHESS, 1, 3)
+    large = cv2.resize(picture, None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC)
+    small, big = find_board(picture, CHESS, "a"), find_board(large, CHESS, "b")
+    back = (big.pixels + 0.5) / 4 - 0.5
+    same = min(np.abs(small.pixels - p).max() for p in (back, back[::-1]))
+    assert same < 0.15
+
+
+def test_sixteen_bits_and_grey_give_the_same_corners():
+    _, (picture,) = shot(CHESS, 1, 3)
+    pixels = find_board(picture, CHESS, "a").pixels
+    np.testing.assert_array_equal(
+        find_board(picture.astype(np.uint16) * 257, CHESS, "a").pixels, pixels
+    )
+    np.testing.assert_allclose(find_board(picture[:, :, 0], CHESS, "a").pixels, pixels, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "told"),
+    [
+        (lambda p: np.full_like(p, 128), "no chessboard of 9x6 inner corners found"),
+        (lambda p: cv2.GaussianBlur(p, (0, 0), 5.5), "blurred: edges of|no chessboard"),
+        (lambda p: cv2.resize(p, None, fx=0.2, fy=0.2, interpolation=3), "too small|no chessboard"),
+        (lambda p: p[:, :300], "no chessboard"),
+    ],
+)
+def test_a_poor_picture_is_refused_with_the_reason(spoil, told):
+    _, (picture,) = shot(CHESS, 1, 6)
+    find_board(picture, CHESS, "a")
+    with pytest.raises(BoardNotFound, match=told):
+        find_board(spoil(picture), CHESS, "a")
+
+
+def test_too_small_squares_are_named():
+    far = scattered_poses(LENS, CHESS, 1, np.random.default_rng(1), fill=0.11)
+    (picture,) = photograph_boards(LENS, CHESS, far, BoardPhotographer(0.3, 0.5))
+    with pytest.raises(BoardNotFound, match=r"too small: its squares are \d\.\d px"):
+        find_board(picture, CHESS, "a")
+
+
+def test_the_old_charuco_pattern_is_recognised():
+    old = CharucoBoard(8, 6, 0.03, 0.021, "DICT_5X5_100", legacy=True)
+    _, pictures = shot(old, 4, 2)
+    assert seen_pattern(pictures[0], CHARUCO) == old
+    assert "of before OpenCV 4.6" in pattern_told(old, CHARUCO)
+    found = calibrate_lens(list("0123"), lambda name: pictures[int(name)], CHARUCO, "plumb_bob")
+    assert found.board == old
+    _, (new,) = shot(CHARUCO, 1, 2)
+    assert seen_pattern(new, CHARUCO) == CHARUCO
+    assert pattern_told(CHARUCO, CHARUCO) is None
+    # an odd number of rows looks the same in both
+    odd = CharucoBoard(8, 5, 0.03, 0.021, "DICT_5X5_100")
+    assert seen_pattern(new, odd) == odd
+
+
+def test_pictures_of_a_board_give_the_lens_within_its_sigmas(calibration):
+    error = parameters_of(calibration.lens)[:4] - parameters_of(LENS)[:4]
+    sigma = np.array(list(calibration.quality.sigmas().values()))[:4]
+    assert (np.abs(error) < 4 * sigma).all()
+    assert sigma.max() < 0.5
+    assert calibration.lens.distortion.model == "plumb_bob"
+    assert calibration.fit.rms_pixels < 0.08
+    assert {report.status for report in calibration.pictures} == {"used"}
+    assert len(calibration.models) == 5
+
+
+def test_charuco_pictures_through_a_fisheye_give_it_back():
+    fisheye = LENSES["equidistant"]
+    _, pictures = shot(CHARUCO, 8, 4, lens=fisheye)
+    found = calibrate_lens(
+        [str(i) for i in range(8)], lambda name: pictures[int(name)], CHARUCO, "equidistant"
+    )
+    error = parameters_of(found.lens)[:4] - parameters_of(fisheye)[:4]
+    assert (np.abs(error) < 4 * np.array(list(found.quality.sigmas().values()))[:4]).all()
+
+
+def test_each_poor_picture_is_rejected_with_its_own_reason(chess):
+    pictures = dict(chess)
+    pictures["blank.png"] = np.full_like(chess["0.png"], 90)
+    pictures["turned.png"] = np.ascontiguousarray(np.rot90(chess["1.png"]))
+    # as a picture of another zoom: the middle, enlarged
+    pictures["zoomed.png"] = cv2.resize(chess["2.png"][60:420, 80:560], (640, 480))
+
+    def read(name):
+        if name == "broken.png":
+            raise PictureError("broken.png: the picture breaks off after 5 bytes; copy it again")
+        return pictures[name]
+
+    found = calibrate_lens([*pictures, "broken.png"], read, CHESS, "plumb_bob")
+    reasons = {r.picture: r.reason for r in found.pictures if r.status == "rejected"}
+    assert reasons.pop("blank.png").startswith("no chessboard")
+    assert reasons.pop("turned.png") == "other size: 480 x 640 px, most are 640 x 480"
+    assert reasons.pop("broken.png").startswith("the picture breaks off")
+    # the zoomed board may have left the picture, but never counts
+    assert set(reasons) <= {"zoomed.png"}
+    zoomed = next(r for r in found.pictures if r.picture == "zoomed.png")
+    assert zoomed.status == "rejected"
+    assert found.warnings[0].startswith("4 of 13 pictures rejected: ")
+    assert abs(found.lens.fx - LENS.fx) < 2
+
+
+def test_too_few_pictures_are_refused(chess):
+    with pytest.raises(TooFewPictures, match=r"^2 of 2 pictures show the chessboard"):
+        calibrate_lens(["0.png", "1.png"], chess.__getitem__, CHESS)
+    with pytest.raises(TooFewPictures, match="1 of 1 pictures"):
+        calibrate_lens(["0.png", "0.png", "0.png"], chess.__getitem__, CHESS)
+
+
+def test_another_board_than_asked_for_is_named(chess):
+    with pytest.raises(BoardNotFound, match=r"did you mean --board chessboard 9x6 0\.03\?"):
+        calibrate_lens(["0.png"], chess.__getitem__, Chessboard(8, 6, 0.03))
+
+
+@pytest.mark.parametrize(
+    ("board", "told"),
+    [
+        (CHESS, r"markers of DICT_5X5_\d+ are seen; did you mean --board charuco"),
+        (CharucoBoard(8, 6, 0.03, 0.021, "6X6_50"), r"did you mean DICT_5X5_\d+\?"),
+        (CharucoBoard(4, 4, 0.03, 0.021, "5X5_100"), r"a marker of number \d+ is seen, a board"),
+    ],
+)
+def test_markers_of_another_board_are_named(board, told):
+    _, (picture,) = shot(CHARUCO, 1, 2)
+    with pytest.raises((BoardNotFound, TooFewPictures), match=told):
+        calibrate_lens(["a"], lambda name: picture, board)
+
+
+def test_an_unknown_model_is_refused(chess):
+    with pytest.raises(InvalidValue, match="is none of auto, none, plumb_bob"):
+        calibrate_lens(["0.png"], chess.__getitem__, CHESS, "thin_prism")
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([], "give it as chessboard"),
+        (["circles", "9x6", "0.02"], "give it as chessboard"),
+        (["chessboard", "9x6"], "give it as chessboard"),
+        (["chessboard", "9by6", "0.02"], "two numbers such as 9x6"),
+        (["chessboard", "9x6", "wide"], "the square's side must be a number"),
+        (["chessboard", "9x6", "25"], r"25 m is no board's; sides are in metres \(0.025 for 25"),
+        (["chessboard", "9x6", "-1"], "must be above zero"),
+        (["chessboard", "9x6", "nan"], "must be finite"),
+        (["chessboard", "2x6", "0.02"], "at least 3 corners"),
+        (["chessboard", "99x6", "0.02"], "at most 60 squares"),
+        (["charuco", "7x5", "0.02", "0.03", "5X5_50"], "must be smaller than its square"),
+        (["charuco", "7x5", "0.03", "0.02", "9X9_50"], "'9X9_50' is no dictionary"),
+        (["charuco", "20x20", "0.03", "0.02", "5X5_50"], "needs 200 markers, DICT_5X5_50 has 50"),
+    ],
+)
+def test_a_board_that_can_t_be_is_refused(words, told):
+    with pytest.raises(InvalidValue, match=told):
+        board_from_words(words)
+
+
+def test_boards_are_read_as_they_are_said():
+    assert board_from_words(["chessboard", "9x6", "0.025"]) == CHESS
+    assert board_from_words(["charuco", "8x6", "0.03", "0.021", "5x5_100"]) == CHARUCO
+    april = board_from_words(["charuco", "7X5", "0.03", "0.02", "dict_apriltag_36H11"])
+    assert april.dictionary.upper() == "DICT_APRILTAG_36H11"
+
+
+@pytest.mark.parametrize("legacy", [False, True])
+@pytest.mark.parametrize("size", [(7, 5), (7, 6), (6, 6)])
+def test_our_drawing_is_opencv_s(size, legacy):
+    board = CharucoBoard(*size, 0.03, 0.02, "DICT_5X5_100", legacy)
+    drawn = board.opencv().generateImage((size[0] * 84, size[1] * 84), marginSize=0)
+    np.testing.assert_array_equal(board_picture(board, 84, 0.0), drawn)
+
+
+@pytest.mark.parametrize("board", [CHESS, CHARUCO], ids=["chessboard", "charuco"])
+def test_a_printed_board_has_the_size_it_states_and_is_found(tmp_path, board):
+    width, height = page_millimetres(board)
+    columns, rows = board.squares
+    side = 1e3 * board.square
+    assert (width, height) == pytest.approx(((columns + 2) * side, (rows + 2) * side))
+    assert write_board(board, tmp_path / "a.png") == (width, height)
+    data = (tmp_path / "a.png").read_bytes()
+    at = data.index(b"pHYs")
+    assert zlib.crc32(data[at : at + 13]).to_bytes(4, "big") == data[at + 13 : at + 17]
+    picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    dots_per_metre = int.from_bytes(data[at + 4 : at + 8], "big")
+    assert picture.shape[1] / dots_per_metre * 1e3 == pytest.approx(width, rel=1e-3)
+    small = cv2.resize(picture, None, fx=0.25, fy=0.25, interpolation=cv2.INTER_AREA)
+    assert len(find_board(small, board, "a").numbers) == len(board.corners)
+
+
+def test_vector_prints_hold_every_black_square_in_millimetres(tmp_path):
+    write_board(CHESS, tmp_path / "a.svg")
+    write_board(CHESS, tmp_path / "a.pdf")
+    svg, pdf = (tmp_path / "a.svg").read_text(), (tmp_path / "a.pdf").read_bytes().decode()
+    assert 'width="300mm" height="225mm"' in svg
+    squares = re.findall(r'<rect x="([\d.]+)" y="([\d.]+)" width="25" height="25"/>', svg)
+    assert len(squares) == 35
+    boxes = re.findall(r"^([\d.]+) ([\d.]+) ([\d.]+) ([\d.]+) re$", pdf, re.MULTILINE)
+    millimetres = np.array(boxes, float) * 25.4 / 72
+    np.testing.assert_allclose(millimetres[:, 2:], 25, atol=1e-4)
+    np.testing.assert_allclose(millimetres[:, 0], np.array(squares, float)[:, 0], atol=1e-4)
+    # a PDF's y points up
+    up = 225 - np.array(squares, float)[:, 1] - 25
+    np.testing.assert_allclose(millimetres[:, 1], up, atol=1e-4)
+    # the table at a PDF's end says at which byte each object begins
+    for number, place in enumerate(re.findall(r"^(\d{10}) 00000 n", pdf, re.MULTILINE), 1):
+        assert pdf[int(place) :].startswith(f"{number} 0 obj")
+
+
+def test_a_board_is_not_printed_into_another_ending(tmp_path):
+    with pytest.raises(DocumentError, match=r"ends in \.pdf, \.svg, \.png"):
+        write_board(CHESS, tmp_path / "a.doc")
+
+
+def test_overlays_are_drawn_on_copies(calibration, chess):
+    fit, picture = calibration.fit, chess["0.png"]
+    before = picture.copy()
+    gain = residual_gain(fit)
+    drawn = draw_view(picture, fit, 0, gain)
+    np.testing.assert_array_equal(picture, before)
+    u, v = np.round(fit.views[0].pixels[20]).astype(int)
+    assert (drawn[v, u] != picture[v, u]).any()
+    assert draw_coverage(fit, gain).shape == picture.shape
+    assert gain >= 1
