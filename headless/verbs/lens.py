@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from ...core.camera import Camera
@@ -14,6 +15,10 @@ from ..told import print_json, progress, warn
 
 PICTURE_ENDINGS = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp", ".pgm", ".ppm")
 MODELS = ("auto", "none", "plumb_bob", "rational_polynomial", "equidistant")
+# OpenCV's number of the level that tells errors and no warnings
+ERRORS_ONLY = 2
+# a marker's white rim as a part of its cells, from which on it is found safely
+SAFE_RIM = 0.7
 WORDS_OF_A_BOARD = {"chessboard": 3, "charuco": 5}
 
 
@@ -51,7 +56,6 @@ def run(args: argparse.Namespace) -> int:
     from ...core.picture.pictures import read_picture
     from ..lens_report import document, draw, tell
 
-    _quiet()
     words, more = _split(args.board)
     board = board_from_words(words)
     if args.print_board is not None:
@@ -61,7 +65,8 @@ def run(args: argparse.Namespace) -> int:
     names = _pictures([*args.pictures, *more])
     if args.out is not None:
         check_camera_path(args.out)
-    calibration = calibrate_lens(names, read_picture, board, args.model)
+    with _opencv_quiet():
+        calibration = calibrate_lens(names, read_picture, board, args.model)
     failed = calibration.verdict == "failed"
     if args.out is not None and not failed:
         write_camera(Camera(calibration.lens), args.out)
@@ -76,11 +81,17 @@ def run(args: argparse.Namespace) -> int:
     return NOT_TRUSTED if failed else DONE
 
 
-def _quiet() -> None:
-    """OpenCV warns of tight markers once a picture; what it says is told once, by us."""
+@contextmanager
+def _opencv_quiet() -> Iterator[None]:
+    """OpenCV warns of tight markers once a picture, between our lines."""
     import cv2
 
-    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_ERROR)
+    level = cv2.getLogLevel()
+    cv2.setLogLevel(ERRORS_ONLY)
+    try:
+        yield
+    finally:
+        cv2.setLogLevel(level)
 
 
 def _split(words: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -129,3 +140,8 @@ def _print_board(path: Path, board: object) -> None:
         f"it on something flat; then measure: all {columns} squares across are "
         f"{columns * side:g} mm, all {rows} down {rows * side:g} mm. Give the side measured."
     )
+    if isinstance(board, CharucoBoard):
+        cell = board.marker / (board.markers.markerSize + 2)
+        if 0.5 * (board.square - board.marker) < SAFE_RIM * cell:
+            most = 1e3 * board.square / (1 + 2 * SAFE_RIM * cell / board.marker)
+            warn([f"the markers fill their squares; at most {most:.1f} mm are found safely"])
