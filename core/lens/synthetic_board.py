@@ -23,6 +23,7 @@ from .drawing import board_picture
 PIXELS_PER_SQUARE = 84
 MARGIN = 1.0
 POINTS_PER_SIDE = 4
+CANDIDATES = 6
 # linear light of paper, ink and the wall behind
 PAPER, INK, WALL = 0.75, 0.03, 0.18
 
@@ -63,27 +64,51 @@ def scattered_poses(
 ) -> list[Pose]:
     """Poses of a board held about the picture: `fill` of its width, tilted up to `tilt_degrees`.
 
-    The board's middle goes to a random pixel, at a random angle, so that all of it is in view.
+    All of it is in view, at a random angle. Of a few random places each time the one is taken that
+    is farthest from those before, as a careful photographer would.
     """
+    poses: list[Pose] = []
+    middles: list[Array] = []
+    while len(poses) < count:
+        tried = [
+            _in_view(intrinsics, board, rng, np.radians(tilt_degrees), fill)
+            for _ in range(CANDIDATES)
+        ]
+        lonely = [_nearest(_middle(intrinsics, board, pose), middles) for pose in tried]
+        poses.append(tried[int(np.argmax(lonely))])
+        middles.append(_middle(intrinsics, board, poses[-1]))
+    return poses
+
+
+def _in_view(
+    intrinsics: Intrinsics, board: Board, rng: np.random.Generator, tilt: float, fill: float
+) -> Pose:
+    """One random pose that shows the whole board."""
     size = np.array([intrinsics.width, intrinsics.height])
     extent = float(np.linalg.norm(np.ptp(board.corners, axis=0)))
     distance = extent * intrinsics.fx / (fill * intrinsics.width)
-    poses: list[Pose] = []
-    while len(poses) < count:
+    while True:
         axis = rng.normal(size=2)
-        tilt = np.radians(tilt_degrees) * np.sqrt(rng.uniform(0.1, 1))
+        leaned = tilt * np.sqrt(rng.uniform(0.1, 1)) * axis / np.linalg.norm(axis)
         turn = Pose.from_rotation_vector([0, 0, rng.uniform(-np.pi, np.pi)], np.zeros(3))
-        lean = Pose.from_rotation_vector([*(tilt * axis / np.linalg.norm(axis)), 0.0], np.zeros(3))
-        ray = intrinsics.rays(rng.uniform(0.1, 0.9, (1, 2)) * size)[0]
+        lean = Pose.from_rotation_vector([*leaned, 0.0], np.zeros(3))
+        ray = intrinsics.rays(rng.uniform(0.05, 0.95, (1, 2)) * size)[0]
         if not np.isfinite(ray).all():
             continue
-        facing = _facing(ray)
         place = Pose(np.eye(3), ray * distance * rng.uniform(0.75, 1.4))
-        pose = place @ facing @ lean @ turn @ Pose(np.eye(3), -board.corners.mean(axis=0))
+        pose = place @ _facing(ray) @ lean @ turn @ Pose(np.eye(3), -board.corners.mean(axis=0))
         pixels = intrinsics.project(pose.apply(_rim(board)))
         if np.isfinite(pixels).all() and intrinsics.contains(pixels).all():
-            poses.append(pose)
-    return poses
+            return pose
+
+
+def _middle(intrinsics: Intrinsics, board: Board, pose: Pose) -> Array:
+    middle: Array = intrinsics.project(pose.apply(board.corners)).mean(axis=0)
+    return middle
+
+
+def _nearest(place: Array, others: Sequence[Array]) -> float:
+    return min((float(np.linalg.norm(place - other)) for other in others), default=0.0)
 
 
 def _rim(board: Board) -> Array:
