@@ -32,6 +32,7 @@ def document(calibration: LensCalibration) -> dict[str, Any]:
         "covariance": fit.covariance,
         "rms_pixels": fit.rms_pixels,
         "noise_pixels": fit.noise_pixels,
+        "disagreement": fit.disagreement,
         "corner_error_at_2_m": quality.corner_error(TOLD_AT),
         "covered": quality.covered,
         "tilts_degrees": np.degrees(quality.tilts),
@@ -76,6 +77,7 @@ def tell(calibration: LensCalibration) -> None:
         ("lens", f"{lens.width} x {lens.height} px, distortion {model}"),
         *_parameters(calibration),
         ("rms", f"{fit.rms_pixels:.3f} px over {corners} corners of {len(fit.views)} pictures"),
+        ("agreement", f"pictures pull {fit.disagreement:.1f} times as far as their noise explains"),
         ("at the rim", _rim(calibration)),
         (f"at {TOLD_AT:g} m", _error_at(quality.corner_error(TOLD_AT))),
         (

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import InvalidValue
@@ -77,24 +78,43 @@ class LensFit:
         """Of the lens's parameters, (P, P); None where the pictures do not determine them.
 
         The noise is that of the residuals. What the corners of one picture have in common (a bent
-        board, a blur) counts once: by how much more the pictures' own pulls on the lens scatter
-        than independent corners would, the covariance grows.
+        board, a blur) counts once: the covariance grows by the square of `disagreement`.
         """
-        reduced, pulls, shares = self.normal.reduced(0.0)
-        free = np.setdiff1d(np.arange(len(reduced)), self.held)
-        among = np.ix_(free, free)
-        variance = self.noise_pixels**2
-        of_lens = np.where(free >= 4, variance / COEFFICIENT_SIGMA**2, 0.0)
-        inverse = _inverse(reduced[among] + np.diag(of_lens))
+        inverse = self._inverse
         if inverse is None:
             return None
-        own = [inverse @ share[among] for share in shares]
-        scatter = float(np.einsum("vi,ij,vj->", pulls[:, free], inverse, pulls[:, free])) / variance
-        expected = len(inverse) - float(sum(np.trace(s @ s) for s in own))
-        together = max(1.0, scatter / expected) if expected > 0.5 else 1.0
-        covariance = np.zeros_like(reduced)
-        covariance[among] = variance * together * inverse
+        covariance = np.zeros_like(self.normal.lens[0])
+        among = np.ix_(self._free, self._free)
+        covariance[among] = (self.noise_pixels * max(1.0, self.disagreement)) ** 2 * inverse
         return covariance
+
+    @cached_property
+    def disagreement(self) -> float:
+        """By how much more the pictures pull at the lens than their corners' noise explains.
+
+        1 for independent corners; the root of the pulls' sum of squares over its expectation.
+        """
+        inverse = self._inverse
+        if inverse is None:
+            return 1.0
+        _, pulls, shares = self.normal.reduced(0.0)
+        own = [inverse @ share[np.ix_(self._free, self._free)] for share in shares]
+        pulled = pulls[:, self._free] / max(self.noise_pixels, 1e-12)
+        scatter = float(np.einsum("vi,ij,vj->", pulled, inverse, pulled))
+        expected = len(inverse) - float(sum(np.trace(s @ s) for s in own))
+        # two pictures leave nothing to disagree about
+        return float(np.sqrt(scatter / expected)) if expected > 0.5 else 1.0
+
+    @property
+    def _free(self) -> NDArray[np.intp]:
+        return np.setdiff1d(np.arange(len(parameters_of(self.lens))), self.held)
+
+    @cached_property
+    def _inverse(self) -> Array | None:
+        """The inverse of the lens's own normal matrix, of what is solved for."""
+        reduced = self.normal.reduced(0.0)[0]
+        prior = np.where(self._free >= 4, (self.noise_pixels / COEFFICIENT_SIGMA) ** 2, 0.0)
+        return _inverse(reduced[np.ix_(self._free, self._free)] + np.diag(prior))
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,12 +21,14 @@ from .outvoting import outvoted
 from .quality import LensQuality
 from .starts import first_fit, without_k3
 from .verdict import Verdict, verdict_of
-from .view import BoardView
+from .view import BoardView, moved_pixels
 
 Status = Literal["used", "rejected"]
 FEWEST_PICTURES = 3
 # pictures without a board that are searched for another one
 HINTED = 3
+# a board whose corners moved less than so many pixels did not move
+STILL = 1.0
 Read = Callable[[str], NDArray[Any]]
 
 
@@ -121,7 +123,23 @@ def _seen(
         other, told = sizes[name], f"{size[0]} x {size[1]}"
         reason = f"other size: {other[0]} x {other[1]} px, most are {told}"
         reports[name] = replace(_report(found.pop(name)), status="rejected", reason=reason)
-    return list(found.values()), reports, board, size
+    return _moved(list(found.values()), reports), reports, board, size
+
+
+def _moved(views: Sequence[BoardView], reports: dict[str, PictureReport]) -> list[BoardView]:
+    """Views without those of a board that stands where it stood in an earlier picture.
+
+    They repeat each other's errors: counted as new, they would make the stated sigmas too small.
+    """
+    kept: list[BoardView] = []
+    for view in views:
+        same = next((other for other in kept if moved_pixels(view, other) < STILL), None)
+        if same is None:
+            kept.append(view)
+            continue
+        reason = f"the same view as {same.picture}: move the board or the camera between pictures"
+        reports[view.picture] = replace(_report(view), status="rejected", reason=reason)
+    return kept
 
 
 def _refuse_few(

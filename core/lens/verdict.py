@@ -20,6 +20,8 @@ LEAST_COVERED = 0.6
 LEAST_DISTANCE_RATIO = 1.15
 WEAK_RMS, FAILED_RMS = 1.0, 5.0
 WEAK_FOCAL, FAILED_FOCAL = 0.003, 0.02
+# one lens and the right model give 0.6 to 1.3; a zoom that moved by 2 % gives 3, by 15 % 6
+WEAK_DISAGREEMENT, FAILED_DISAGREEMENT = 2.5, 5.0
 # a ring of residuals this many sigmas and pixels off, and this part of the noise
 RING_SIGMAS, RING_PIXELS, RING_SHARE = 4.0, 0.05, 0.3
 UNEVEN_FOCAL, OFF_CENTRE = 0.03, 0.15
@@ -60,12 +62,23 @@ def _undetermined(quality: LensQuality) -> list[str]:
 
 
 def _contradictions(fit: LensFit) -> list[str]:
-    if fit.rms_pixels <= FAILED_RMS:
-        return []
-    return [
-        f"corners are {fit.rms_pixels:.1f} px (rms) from where they should be: is the board flat, "
-        "its size right, and are all pictures from one lens and zoom?"
-    ]
+    failures = []
+    if fit.rms_pixels > FAILED_RMS:
+        failures.append(
+            f"corners are {fit.rms_pixels:.1f} px (rms) from where they should be: is the board "
+            "flat, its size right, and are all pictures from one lens and zoom?"
+        )
+    if fit.disagreement > FAILED_DISAGREEMENT:
+        failures.append(_disagreement_told(fit))
+    return failures
+
+
+def _disagreement_told(fit: LensFit) -> str:
+    return (
+        f"the pictures pull at the lens {fit.disagreement:.1f} times as far as their corners' "
+        "noise explains: are all from one lens, zoom and focus, is the board flat, and does "
+        f"{fit.lens.distortion.model} fit this lens?"
+    )
 
 
 def _few(fit: LensFit, outvoted: Sequence[str]) -> list[str]:
@@ -113,6 +126,8 @@ def _patterns(fit: LensFit, quality: LensQuality) -> list[str]:
             f"corners are {fit.rms_pixels:.2f} px (rms) from where they should be, 0.1 to 0.5 is "
             "usual: is the board flat, the focus sharp, the exposure short?"
         )
+    if WEAK_DISAGREEMENT < fit.disagreement <= FAILED_DISAGREEMENT:
+        doubts.append(_disagreement_told(fit))
     least = max(RING_PIXELS, RING_SHARE * fit.noise_pixels)
     for ring in quality.rings:
         if abs(ring.outward) > max(RING_SIGMAS * ring.sigma, least):

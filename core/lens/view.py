@@ -64,6 +64,14 @@ def edges_of(board: Board, numbers: NDArray[np.intp]) -> tuple[NDArray[np.intp],
     return starts[ends >= 0], ends[ends >= 0]
 
 
+def moved_pixels(one: BoardView, other: BoardView) -> float:
+    """The median distance between the corners that both views show; infinite where none is."""
+    both, here, there = np.intersect1d(one.numbers, other.numbers, return_indices=True)
+    if len(both) == 0:
+        return float("inf")
+    return float(np.median(np.linalg.norm(one.pixels[here] - other.pixels[there], axis=1)))
+
+
 def edge_blur(grey: Grey, board: Board, numbers: NDArray[np.intp], pixels: Array) -> float:
     """The Gaussian sigma in pixels of the edges between neighbouring corners, by their slope.
 

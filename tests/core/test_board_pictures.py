@@ -178,6 +178,14 @@ def test_each_poor_picture_is_rejected_with_its_own_reason(chess):
     assert abs(found.lens.fx - LENS.fx) < 2
 
 
+def test_a_board_that_did_not_move_counts_once(chess):
+    pictures = chess | {"again.png": cv2.GaussianBlur(chess["3.png"], (0, 0), 0.6)}
+    found = calibrate_lens(list(pictures), pictures.__getitem__, CHESS, "plumb_bob")
+    again = next(r for r in found.pictures if r.picture == "again.png")
+    assert (again.status, again.reason[:25]) == ("rejected", "the same view as 3.png: m")
+    assert len(found.fit.views) == 9
+
+
 def test_too_few_pictures_are_refused(chess):
     with pytest.raises(TooFewPictures, match=r"^2 of 2 pictures show the chessboard"):
         calibrate_lens(["0.png", "1.png"], chess.__getitem__, CHESS)

@@ -196,7 +196,7 @@ def test_a_model_that_does_not_fit_leaves_rings_of_residuals():
     assert max(abs(ring.outward) for ring in quality.rings) > 0.5
     verdict, told = judged(fit)
     assert verdict != "good"
-    assert any("the model none does not fit" in line for line in told)
+    assert any("none fit this lens" in line or "none does not fit" in line for line in told)
 
 
 def test_the_rings_of_the_right_model_hold_noise_alone(brown_fit):
@@ -213,6 +213,28 @@ def test_the_error_told_in_the_corner_is_that_of_the_corner():
         off.append(2 * np.linalg.norm(fit.lens.rays(corner) - truth.rays(corner)))
         told.append(LensQuality.of(fit).corner_error(2.0))
     assert 0.4 < np.sqrt(np.mean(np.square(off)) / np.mean(np.square(told))) < 1.5
+
+
+@pytest.mark.parametrize(("zoom", "judgement"), [(1.02, "weak"), (1.15, "failed")])
+def test_a_zoom_that_moved_half_way_through_is_seen_though_every_picture_fits(zoom, judgement):
+    truth = LENSES["plumb_bob"]
+    zoomed = Intrinsics(640, 480, zoom * 520, zoom * 521, 325, 236, truth.distortion)
+    views = views_through(truth, 6, 1, fill=0.7) + views_through(zoomed, 6, 51, fill=0.7)
+    fit, _ = outvoted(first_fit(views, SIZE, "plumb_bob"))
+    assert fit.rms_pixels < 0.5
+    verdict, told = judged(fit)
+    assert verdict == judgement
+    assert any("are all from one lens, zoom and focus" in line for line in told)
+
+
+def test_pictures_of_one_lens_pull_no_more_than_their_noise():
+    pulls = [
+        first_fit(views_through(LENSES["none"], count, seed), SIZE, "none").disagreement
+        for count in (4, 10)
+        for seed in range(4)
+    ]
+    assert min(pulls) > 0.4
+    assert max(pulls) < 1.8
 
 
 def test_a_stretched_picture_is_suspected():

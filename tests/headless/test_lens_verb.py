@@ -8,7 +8,7 @@ import json
 import cv2
 import numpy as np
 import pytest
-from monocell.core import Distortion, Intrinsics
+from monocell.core import Distortion, Intrinsics, Pose
 from monocell.core.document.camera_file import read_camera
 from monocell.core.lens.board import Chessboard
 from monocell.core.lens.synthetic_board import photograph_boards, scattered_poses
@@ -78,10 +78,14 @@ def test_pictures_may_stand_behind_the_board(run, boards):
     assert code in (0, 3)
 
 
-def test_a_lens_that_can_t_be_trusted_is_told_and_not_written(run, job, photos):
-    # three times the same picture: the focal length stays open
-    for name in "abc":
-        cv2.imwrite(str(job / f"{name}.png"), photos[0])
+def test_a_lens_that_can_t_be_trusted_is_told_and_not_written(run, job):
+    # boards parallel to the picture: the focal length stays open
+    flat = [
+        Pose(np.eye(3), np.array([-0.09 + x, -0.06, z]))
+        for x, z in ((-0.03, 0.4), (0.01, 0.5), (0.02, 0.6))
+    ]
+    for name, picture in zip("abc", photograph_boards(LENS, BOARD, flat), strict=True):
+        cv2.imwrite(str(job / f"{name}.png"), picture)
     names = ("a.png", "b.png", "c.png")
     code, out, err = run("lens", *names, *SAID, "--model", "plumb_bob", "--out", "no.json")
     assert code == 3
