@@ -28,7 +28,7 @@ from monocell.core.lens.synthetic_board import (
 )
 from monocell.core.picture.pictures import read_picture
 from monocell.headless.lens_report import tell
-from monocell.headless.told import table, warn
+from monocell.headless.told import progress, table, warn
 
 BROWN, FISHEYE = [-0.28, 0.09, 6e-4, -4e-4, -0.01], [-0.02, 0.004, -0.001, 2e-4]
 RATIONAL = [0.35, -0.12, 5e-4, -3e-4, 0.02, 0.6, -0.05, 0.03]
@@ -53,7 +53,11 @@ def main() -> None:
     parser.add_argument("--sets", type=int, default=12)
     parser.add_argument("--pictures", type=int, default=12)
     args = parser.parse_args()
-    rows = [_row(lens, board, args.sets, args.pictures) for lens in LENSES for board in BOARDS]
+    rows = []
+    for lens in LENSES:
+        for board in BOARDS:
+            rows.append(_row(lens, board, args.sets, args.pictures))
+            progress("  ".join(rows[-1]))
     header = ("lens, board", "rms px", "error fx", "cx", "sigma fx", "cx", "z", "model", "s a set")
     print(table(header, rows))
     if args.folder is not None:

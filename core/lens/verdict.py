@@ -76,8 +76,8 @@ def _contradictions(fit: LensFit) -> list[str]:
 def _disagreement_told(fit: LensFit) -> str:
     return (
         f"the pictures pull at the lens {fit.disagreement:.1f} times as far as their corners' "
-        "noise explains: are all from one lens, zoom and focus, is the board flat, and does "
-        f"{fit.lens.distortion.model} fit this lens?"
+        "noise explains: are all from one lens, zoom and focus, is the board flat, and does the "
+        f"model {fit.lens.distortion.model} fit this lens?"
     )
 
 
