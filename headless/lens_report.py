@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..core.camera import Camera
 from ..core.document.entries import camera_entry
 from ..core.lens.calibrate_lens import LensCalibration, PictureReport
 from ..core.lens.model_choice import ModelScore
@@ -20,8 +21,6 @@ TOLD_AT = 2.0
 
 def document(calibration: LensCalibration) -> dict[str, Any]:
     """The whole report as JSON values; angles in degrees and pixels by name."""
-    from ..core.camera import Camera
-
     quality, fit = calibration.quality, calibration.fit
     return {
         "verdict": calibration.verdict,
@@ -42,27 +41,8 @@ def document(calibration: LensCalibration) -> dict[str, Any]:
             for r in quality.rings
         ],
         "board": str(calibration.board),
-        "models": [
-            {
-                "model": one.model,
-                "coefficients": one.coefficients,
-                "rms_pixels": one.rms_pixels,
-                "unseen_rms_pixels": one.unseen_rms_pixels,
-                "images_the_corners": one.whole,
-            }
-            for one in calibration.models
-        ],
-        "pictures": [
-            {
-                "picture": report.picture,
-                "status": report.status,
-                "reason": report.reason,
-                "corners": report.corners,
-                "rms_pixels": report.rms_pixels,
-                "blur_pixels": report.blur_pixels,
-            }
-            for report in calibration.pictures
-        ],
+        "models": [_model_entry(one) for one in calibration.models],
+        "pictures": [vars(report) for report in calibration.pictures],
     }
 
 
@@ -112,6 +92,16 @@ def draw(calibration: LensCalibration, folder: Path) -> None:
         picture = read_picture(view.picture, fit.lens)
         write_picture(folder / f"{name}.png", draw_view(picture, fit, i, gain))
     write_picture(folder / "coverage.png", draw_coverage(fit, gain))
+
+
+def _model_entry(one: ModelScore) -> dict[str, Any]:
+    return {
+        "model": one.model,
+        "coefficients": one.coefficients,
+        "rms_pixels": one.rms_pixels,
+        "unseen_rms_pixels": one.unseen_rms_pixels,
+        "images_the_corners": one.whole,
+    }
 
 
 def _free(stem: str, taken: set[str]) -> str:
