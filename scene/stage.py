@@ -25,7 +25,7 @@ from .arm_meshes import import_mesh
 from .gripper import Block, grip_frame, gripper_blocks
 from .materials import PLAIN, surface
 from .meshes import Shape, box, cylinder, fill_mesh, shape_of, sphere
-from .rendering import render_linear, render_picture
+from .rendering import render_linear, render_picture, render_window
 from .room import build_room
 from .transforms import matrix_of
 from .work_cell import Ball, WorkCell
@@ -76,6 +76,20 @@ class Stage(Closing):
         camera = camera or self.cell.camera
         return render_linear(self.scene, camera, samples=samples, bounces=BOUNCES)
 
+    def window(
+        self,
+        window: tuple[int, int, int, int],
+        *,
+        camera: Camera | None = None,
+        samples: int = SAMPLES,
+    ) -> Array:
+        """Linear light of `window` (x, y, width, height) of the picture alone, (height, width, 3).
+
+        Raises InvalidValue for a window that is not inside the picture.
+        """
+        camera = camera or self.cell.camera
+        return render_window(self.scene, camera, window, samples=samples, bounces=BOUNCES)
+
     def close(self) -> None:
         """Remove the scene and all that was built for it."""
         # Cycles lets go of the scene; without this Blender crashes when it ends
@@ -112,7 +126,7 @@ class Stage(Closing):
             ob.matrix_world = matrix_of(world_from_grip @ block.grip_from_block)
 
     def _add_ball(self, ball: Ball) -> None:
-        material = surface("ball", ball.color.tolist(), roughness=0.55)
+        material = surface("ball", ball.color.tolist(), roughness=ball.roughness)
         self._ball = self._add("ball", sphere(ball.radius), material)
         self._ball["radius"] = ball.radius
 
