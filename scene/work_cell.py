@@ -36,6 +36,27 @@ class Ball:
 
 
 @dataclass(frozen=True, eq=False)
+class Panel:
+    """A printed plate, such as a calibration board, in the gripper.
+
+    `world_from_panel`: origin in the middle of the print, x right, y down, z into the plate.
+    `size` (2,) in metres; `albedo` (H, W) from 0 to 1 is the print, rows from the top. The gripper
+    reaches from the flange to a stub behind the plate.
+    """
+
+    world_from_panel: Pose
+    size: Array
+    albedo: Array
+    world_from_flange: Pose | None = None
+    thickness: float = 0.005
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "size", frozen(self.size, (2,), "panel.size"))
+        object.__setattr__(self, "albedo", frozen(self.albedo, (None, None), "panel.albedo"))
+        object.__setattr__(self, "thickness", positive(self.thickness, "panel.thickness"))
+
+
+@dataclass(frozen=True, eq=False)
 class Table:
     """The table whose top is the plane z = 0: its `centre` (2,) and `size` (2,) in metres.
 

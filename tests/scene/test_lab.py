@@ -92,3 +92,50 @@ def test_a_lab_s_numbers_are_checked():
         Lab(wall=np.zeros(2))
     with pytest.raises(InvalidValue, match=r"lab\.lamp_size"):
         Lab(lamp_size=0.0)
+
+
+def panel_at(flange=None, turned=0.0):
+    from monocell.scene.work_cell import Panel
+
+    albedo = np.full((4, 6), 0.8)
+    albedo[0, 0] = albedo[3, 1:3] = 0.02
+    place = PLAIN.pose.inverse() @ Pose.from_rotation_vector([0, turned, 0.1], [0.0, 0.0, 1.0])
+    return Panel(place, np.array([0.3, 0.2]), albedo, flange)
+
+
+def test_a_panel_shows_its_print_where_it_is(blender):
+    from monocell.scene.stage import Stage
+
+    panel = panel_at(turned=0.3)
+    with Stage(cell(PLAIN)) as stage:
+        stage.hold(panel)
+        light = stage.linear(samples=16).sum(axis=2)
+    rows, columns = np.mgrid[:4, :6]
+    x, y = (columns + 0.5) * 0.05 - 0.15, (rows + 0.5) * 0.05 - 0.1
+    points = np.stack([x.ravel(), y.ravel(), np.zeros(24)], axis=1)
+    u, v = np.rint(PLAIN.project(panel.world_from_panel.apply(points))).astype(int).T
+    seen = light[v, u].reshape(4, 6)
+    assert ((seen > 0.5 * np.median(seen)) == (panel.albedo > 0.5)).all()
+
+
+def test_a_panel_comes_and_goes_and_the_ball_with_it(blender):
+    from monocell.scene.stage import Stage
+    from monocell.scene.work_cell import Ball
+
+    kinds = ("objects", "meshes", "materials", "scenes", "worlds", "lights", "cameras")
+    before = {k: len(getattr(blender.data, k)) for k in kinds}
+    flange = panel_at().world_from_panel @ Pose(np.diag([1.0, -1.0, -1.0]), [0.0, 0.0, 0.2])
+    with Stage(cell(PLAIN)) as stage:
+        empty = stage.linear(samples=1)
+        built = len(blender.data.objects)
+        stage.hold(panel_at(flange))
+        held = len(blender.data.objects)
+        assert held > built + 2
+        stage.hold(panel_at(flange, 0.2))
+        assert len(blender.data.objects) == held
+        stage.move((), Ball(np.array([0.3, 0, 0.2]), 0.05, np.array([0.0, 0.6, 0.0])))
+        stage.move((), None)
+        assert (stage.linear(samples=1) == empty).all()
+        stage.hold(panel_at(flange))
+    assert {k: len(getattr(blender.data, k)) for k in kinds} == before
+    assert [image.name for image in blender.data.images] == ["Render Result"]
