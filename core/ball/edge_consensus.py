@@ -35,12 +35,14 @@ class WeighedEdges:
 
     - `offsets_pixels`, and `sigma_pixels` of each for the noise that its own profile shows
     - `valid`: significant and within the picture; `weights`: from 0 to 1, by clearness
+    - `spoilt`: how much more than it may an edge leaves unexplained, at least 1
     """
 
     offsets_pixels: Array
     sigma_pixels: Array
     valid: Mask
     weights: Array
+    spoilt: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +58,27 @@ class Agreement:
     residual_pixels: Array
     weights: Array
     scale: float
+
+
+@dataclass(frozen=True, eq=False)
+class Expectation:
+    """Where the centre is expected: `move` (3,) from where it stands, and the information (3, 3)."""
+
+    move: Array
+    information: Array
+
+    def after(self, move: Array) -> Expectation:
+        """The same from a centre that was moved."""
+        return Expectation(self.move - move, self.information)
+
+    def unlikely(self, moves: Array) -> Array:
+        """Half the squared sigmas (T,) that moves (T, 3) are off."""
+        off = moves - self.move
+        half: Array = 0.5 * np.einsum("ti,ij,tj->t", off, self.information, off)
+        return half
+
+
+NOTHING_EXPECTED = Expectation(np.zeros(3), np.zeros((3, 3)))
 
 
 @dataclass(frozen=True)
@@ -91,10 +114,12 @@ def weighed(
         )
     clear = np.maximum(gains, 0) / (np.maximum(gains, 0) + FULL_GAIN) / spoilt
     vague = 1 + (sigma / VAGUE_PIXELS) ** 2
-    return WeighedEdges(edges.offsets_pixels, sigma, valid, np.where(valid, clear / vague, 0))
+    return WeighedEdges(
+        edges.offsets_pixels, sigma, valid, np.where(valid, clear / vague, 0), spoilt
+    )
 
 
-def agreed_move(edges: WeighedEdges, by_centre: Array) -> Array:
+def agreed_move(edges: WeighedEdges, by_centre: Array, expected: Expectation) -> Array:
     """The move (3,) of the centre that most profiles agree with; `by_centre` (N, 3) as Tangency's.
 
     The centre as it stands is among the hypotheses.
@@ -109,12 +134,16 @@ def agreed_move(edges: WeighedEdges, by_centre: Array) -> Array:
     for offsets, sigma, weights in rows:
         near = AGREEMENT_PIXELS**2 + (1.5 * np.minimum(sigma, VAGUE_PIXELS)) ** 2
         best = np.maximum(best, weights * np.maximum(0, 1 - (offsets - predicted) ** 2 / near))
-    winner: Array = moves[int(np.argmax(best.sum(axis=1)))]
+    winner: Array = moves[int(np.argmax(best.sum(axis=1) - expected.unlikely(moves)))]
     return winner
 
 
 def settled(
-    edges: WeighedEdges, by_centre: Array, start: Array, tolerance: Tolerance
+    edges: WeighedEdges,
+    by_centre: Array,
+    start: Array,
+    tolerance: Tolerance,
+    expected: Expectation,
 ) -> Agreement:
     """Reweighted least squares from the move `start` (3,), each profile by its nearest edge.
 
@@ -135,7 +164,10 @@ def settled(
         if (weights > 0).sum() < FEWEST:
             raise SphereNotFound("the edges around the guess form no outline of a ball")
         root = np.sqrt(weights) / sigma
-        step = np.linalg.lstsq(-by_centre * root[:, None], residual * root, rcond=None)[0]
+        rows = by_centre * root[:, None]
+        normal = rows.T @ rows + expected.information
+        towards = expected.information @ (expected.move - move) - rows.T @ (residual * root)
+        step = np.linalg.lstsq(normal, towards, rcond=1e-12)[0]
         move = move + step
         if np.linalg.norm(step) < tolerance.settled:
             break

@@ -6,7 +6,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 
-import cv2
 import numpy as np
 
 from ..arrays import Array, Mask
@@ -17,36 +16,31 @@ from ..robust import beside_runs, core_sigma, correlation_inflation, middle_of
 from .downhill import lowest
 from .edge_consensus import (
     AGREEMENT_PIXELS,
+    NOTHING_EXPECTED,
     Agreement,
+    Expectation,
     Tolerance,
-    WeighedEdges,
     agreed_move,
     settled,
-    weighed,
 )
-from .limb import UNKNOWNS, LimbEdges, Reach, find_limb
 from .outline_checks import (
-    LARGEST_CUT,
     cut_refusal,
     doubts_of,
     refuse_clutter,
     refuse_few,
     refuse_little,
-    refuse_small,
 )
+from .outline_ring import Look, OutlineRing
 from .sphere import OutlineRays, centre_covariance, tangency
 
-MOST_POINTS, FEWEST_POINTS = 200, 48
 BLURS = (0.4, 0.53, 0.7, 0.93, 1.25, 1.7, 2.3, 3.1)
 SHARPNESS_POINTS = 80
 FIRST_SEARCH, FIRST_BLUR, FIRST_POINTS, LARGE = 3.0, 0.8, 96, 60.0
 FINE_SEARCH, FINE_SHARE = 1.25, 0.006
-# farther into the ball than out of it: what stands beside a ball is not known
-INWARDS, OUTWARDS = 4.0, 3.0
+# how near a centre is known that other places of the ball predict
+PREDICTED_SEARCH, PREDICTED_ASIDE_PIXELS, PREDICTED_SIZE_PIXELS = 1.0, 0.3, 0.15
 # what the model may leave of a contrast, before the sharpness is known and after
 FIRST_TRUST, FINE_TRUST = 0.03, 0.005
-# an edge is measured where the picture reaches this far beyond it
-BEYOND_EDGE = 1.5
 # neighbouring profiles share pixels: their scatter understates the outline's error by this factor,
 # found on synthetic balls with noise of known size
 SHARED_PIXELS = 1.3
@@ -59,7 +53,9 @@ BELONGS_PIXELS, BELONGS_SHARE = 0.6, 0.005
 OUT_OF_ROUND_SHARE = 0.003
 # a step this small, as a share of the distance, is a hundredth of an outline's own error
 SETTLED = 1e-6
-JUDGED_SHARE, JUDGED_PIXELS = 0.06, 4.0
+JUDGED_SHARE, JUDGED_PIXELS, JUDGED_TRUST = 0.06, 4.0, 0.01
+# an edge that leaves more than this of what it may is a texture's, and counts for nothing
+MOST_SPOILT = 3.0
 MOST_INDEPENDENT = 300.0
 
 
@@ -91,117 +87,72 @@ class SphereOutline:
     warnings: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, eq=False)
-class _Pass:
-    """One look around the outline of `centre`: edges on profiles, and which of these are inside.
-
-    `noise` is the variance of one sample and `freedom` the samples that are free in a profile;
-    `by_centre` (N, 3) how the outline moves away from fixed pixels with the centre.
-    """
-
-    centre: Array
-    places: OutlineRays
-    normals: Array
-    by_centre: Array
-    inside: Mask
-    edges: LimbEdges
-    noise: float
-    freedom: float
-
-    @property
-    def noise_to_contrast(self) -> float:
-        gains = self.edges.flat_misfits - self.edges.misfits[0]
-        return float(np.sqrt(10 * self.noise / max(middle_of(gains), 1e-12)))
-
-    def weighed(self, trust: float) -> WeighedEdges:
-        if self.inside.mean() < 1 - LARGEST_CUT:
-            raise cut_refusal(1 - float(self.inside.mean()))
-        return weighed(self.edges, self.noise, self.freedom, self.inside, trust)
-
-
 class OutlineMeter:
     """Measures outlines in one picture of linear light (H, W, 3) whose corner is `origin` (2,)."""
 
     def __init__(self, light: Light, origin: Array, intrinsics: Intrinsics, radius: float) -> None:
-        self._light, self._origin = light, origin
+        self._ring = OutlineRing(light, origin, intrinsics, radius)
         self._intrinsics, self._radius = intrinsics, radius
 
-    def measure(self, rough_centre: Array, search: float = FIRST_SEARCH) -> SphereOutline:
-        """The sphere whose outline lies within `search` pixels of that of `rough_centre` (3,).
+    def measure(self, rough_centre: Array, *, predicted: bool = False) -> SphereOutline:
+        """The sphere whose outline lies near that of `rough_centre` (3,), in the camera frame.
+
+        A centre `predicted` from the ball's other places is good to a fraction of a pixel: edges
+        are sought near it only, and an arc that would need a ball of another size is none of it.
 
         Raises SphereNotFound when too little of the outline has an edge where it should be, and
         SphereCut when too much of it lies outside the picture.
         """
         centre, contrast = rough_centre, 0.1
+        expected = self._expected(rough_centre) if predicted else NOTHING_EXPECTED
+        search = PREDICTED_SEARCH if predicted else FIRST_SEARCH
         # what is found at a large ball's scale is off by more pixels: look twice
-        for _ in range(2 if self._size_pixels(centre) > LARGE else 1):
-            seen = self._look(centre, search, FIRST_BLUR, contrast, FIRST_POINTS)
-            centre = centre + self._agreement(seen, FIRST_TRUST, AGREEMENT_PIXELS).move
-            contrast = seen.noise_to_contrast
+        for _ in range(2 if self._ring.size_pixels(centre) > LARGE else 1):
+            seen = self._ring.look(centre, search, FIRST_BLUR, contrast, FIRST_POINTS)
+            move = self._agreement(seen, FIRST_TRUST, AGREEMENT_PIXELS, expected).move
+            centre, contrast = centre + move, seen.noise_to_contrast
+            expected = expected.after(move)
         blur = self._sharpness(centre, contrast)
-        fine = max(FINE_SEARCH, FINE_SHARE * self._size_pixels(centre))
-        seen = self._look(centre, fine, blur, contrast)
-        centre = centre + self._agreement(seen, FINE_TRUST, AGREEMENT_PIXELS).move
-        contrast = seen.noise_to_contrast
-        seen = self._look(centre, fine, blur, contrast)
-        agreement = self._agreement(seen, FINE_TRUST, 0.0)
+        fine = PREDICTED_SEARCH if predicted else FINE_SEARCH
+        fine = max(fine, FINE_SHARE * self._ring.size_pixels(centre))
+        seen = self._ring.look(centre, fine, blur, contrast)
+        move = self._agreement(seen, FINE_TRUST, AGREEMENT_PIXELS, expected).move
+        centre, contrast = centre + move, seen.noise_to_contrast
+        seen = self._ring.look(centre, fine, blur, contrast)
+        agreement = self._agreement(seen, FINE_TRUST, 0.0, expected.after(move))
         coverage, evidence = self._coverage(centre + agreement.move, blur, contrast)
+        refuse_clutter(
+            evidence,
+            core_sigma(agreement.residual_pixels[agreement.weights > 0.1]),
+            self._ring.size_pixels(centre),
+            predicted=predicted,
+        )
         return self._judged(seen, agreement, blur, coverage, evidence)
 
-    def _look(
-        self, centre: Array, search: float, blur: float, contrast: float, most: int = MOST_POINTS
-    ) -> _Pass:
-        size = self._size_pixels(centre)
-        refuse_small(size)
-        farther = 0.5 * search + max(0.0, 2 * blur - 2)
-        reach = Reach(
-            min(INWARDS + farther, 0.7 * size), min(OUTWARDS + farther, max(0.7 * size, 3.0))
-        )
-        count = int(np.clip(2 * np.pi * size, FEWEST_POINTS, most))
-        places = OutlineRays.around(self._intrinsics, centre, self._radius, count)
-        if not np.isfinite(places.pixels).all():
-            raise SphereNotFound("part of the outline lies outside what the lens images")
-        held = tangency(places, centre, self._radius)
-        offsets = reach.offsets()
-        profiles = self._sampled(
-            places.pixels[:, None] + held.normals[:, None] * offsets[:, None]
-        )
-        beyond = BEYOND_EDGE * held.normals
-        inside = self._intrinsics.contains(places.pixels + beyond)
-        inside &= self._intrinsics.contains(places.pixels - beyond)
-        edges = find_limb(profiles, reach, min(search, 0.35 * size), blur, size, contrast)
-        freedom = max(1, (profiles.shape[1] - UNKNOWNS) * profiles.shape[2] - 1)
-        noise = max(middle_of(edges.misfits[0]) / freedom, 1e-10)
-        return _Pass(
-            centre, places, held.normals, held.by_centre, inside, edges, noise, freedom
-        )
-
-    def _sampled(self, at: Array) -> Array:
-        places = (at - self._origin).astype(np.float32)
-        sampled = cv2.remap(
-            self._light,
-            places[..., 0],
-            places[..., 1],
-            cv2.INTER_CUBIC,
-            borderMode=cv2.BORDER_REPLICATE,
-        )
-        return sampled.reshape(*places.shape[:2], -1).astype(float)
-
-    def _size_pixels(self, centre: Array) -> float:
-        focal = 0.5 * (self._intrinsics.fx + self._intrinsics.fy)
+    def _expected(self, centre: Array) -> Expectation:
+        """What the ball's other places say of this one's centre."""
         distance = float(np.linalg.norm(centre))
-        return float(np.tan(np.arcsin(min(0.999, self._radius / distance))) * focal)
+        size = self._ring.size_pixels(centre)
+        axis = centre / distance
+        aside = PREDICTED_ASIDE_PIXELS * self._radius / size
+        deep = PREDICTED_SIZE_PIXELS * distance / size
+        along = np.outer(axis, axis)
+        return Expectation(np.zeros(3), (np.eye(3) - along) / aside**2 + along / deep**2)
 
-    def _agreement(self, seen: _Pass, trust: float, slack_pixels: float) -> Agreement:
+    def _agreement(
+        self, seen: Look, trust: float, slack_pixels: float, expected: Expectation
+    ) -> Agreement:
         """The sphere that most edges agree on; without slack, from where it stands."""
         edges = seen.weighed(trust)
         distance = float(np.linalg.norm(seen.centre))
         # the arc that happens to fit best would else vote the rest of a real ball down
-        round_to = OUT_OF_ROUND_SHARE * self._size_pixels(seen.centre)
+        round_to = OUT_OF_ROUND_SHARE * self._ring.size_pixels(seen.centre)
         sigma = middle_of(edges.sigma_pixels[edges.valid])
         tolerance = Tolerance(slack_pixels, max(1.0, round_to / sigma), SETTLED * distance)
-        start = agreed_move(edges, seen.by_centre) if slack_pixels else np.zeros(3)
-        found = settled(edges, seen.by_centre, start, tolerance)
+        start = np.zeros(3)
+        if slack_pixels:
+            start = agreed_move(edges, seen.by_centre, expected)
+        found = settled(edges, seen.by_centre, start, tolerance, expected)
         where = seen.centre + found.move
         if not np.isfinite(where).all() or np.linalg.norm(where) < 1.01 * self._radius:
             raise SphereNotFound("the edges around the guess form no outline of a ball")
@@ -212,7 +163,7 @@ class OutlineMeter:
 
         @cache
         def left(i: int) -> float:
-            seen = self._look(centre, 1.0, BLURS[i], contrast, SHARPNESS_POINTS)
+            seen = self._ring.look(centre, 1.0, BLURS[i], contrast, SHARPNESS_POINTS)
             # the worst profiles cross a finger or a texture and tell nothing of the sharpness
             kept = np.sort(seen.edges.misfits[0, seen.inside])
             if len(kept) < 8:
@@ -231,21 +182,22 @@ class OutlineMeter:
 
         Beside it the evidence: by how many sigmas that is more than edges anywhere would give.
         """
-        size = self._size_pixels(centre)
+        size = self._ring.size_pixels(centre)
         search = max(min(JUDGED_PIXELS, 0.35 * size), JUDGED_SHARE * size)
-        seen = self._look(centre, search, blur, contrast)
-        edges = seen.weighed(FIRST_TRUST)
+        seen = self._ring.look(centre, search, blur, contrast)
+        edges = seen.weighed(JUDGED_TRUST)
         band = max(BELONGS_PIXELS, BELONGS_SHARE * size)
-        within = edges.valid & (np.abs(edges.offsets_pixels) < band)
+        clear = edges.valid & (edges.spoilt < MOST_SPOILT)
+        within = clear & (np.abs(edges.offsets_pixels) < band)
         coverage = float(within.any(axis=0).mean())
         elsewhere = 1 - min(band / search, 0.9)
-        chance = 1 - elsewhere ** edges.valid.sum(axis=0)
+        chance = 1 - elsewhere ** clear.sum(axis=0)
         spread = np.sqrt(max(float((chance * (1 - chance)).mean()), 1e-3))
         independent = min(2 * np.pi * size, MOST_INDEPENDENT)
         return coverage, (coverage - float(chance.mean())) / spread * np.sqrt(independent)
 
     def _judged(
-        self, seen: _Pass, agreement: Agreement, blur: float, coverage: float, evidence: float
+        self, seen: Look, agreement: Agreement, blur: float, coverage: float, evidence: float
     ) -> SphereOutline:
         centre = seen.centre + agreement.move
         measured = agreement.weights > 0.1
@@ -255,14 +207,13 @@ class OutlineMeter:
         held = tangency(outline, centre, self._radius)
         used = measured
         refuse_few(int(used.sum()), len(used))
-        size = self._size_pixels(centre)
+        size = self._ring.size_pixels(centre)
         cut = 1 - float(seen.inside.mean())
         refuse_little(coverage, cut)
         careful = SHARED_PIXELS * (1 + HIDDEN_PART * (1 - float(used.mean())))
         inflation = correlation_inflation(held.residual_pixels, used)
         sigma = agreement.sigma_pixels * agreement.scale * careful * np.sqrt(inflation)
         rms = core_sigma(held.residual_pixels[used])
-        refuse_clutter(evidence, rms, size)
         return SphereOutline(
             centre,
             centre_covariance(held, sigma, used),
