@@ -62,7 +62,7 @@ class Agreement:
 
 @dataclass(frozen=True, eq=False)
 class Expectation:
-    """Where the centre is expected: `move` (3,) from where it stands, and the information (3, 3)."""
+    """Where the centre should be: `move` (3,) from where it stands, with information (3, 3)."""
 
     move: Array
     information: Array
