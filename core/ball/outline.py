@@ -50,10 +50,12 @@ HIDDEN_PART = 1.5
 # edges belong to the outline when they lie in this band (pixels, or share of the radius: real balls
 # are not round to more than half a percent), though they were looked for in a much wider one
 BELONGS_PIXELS, BELONGS_SHARE = 0.6, 0.005
-OUT_OF_ROUND_SHARE = 0.003
+OUT_OF_ROUND_SHARE = 0.0015
 # a step this small, as a share of the distance, is a hundredth of an outline's own error
 SETTLED = 1e-6
-JUDGED_SHARE, JUDGED_PIXELS, JUDGED_TRUST = 0.06, 4.0, 0.01
+# a point that robust weights leave less than this is outvoted
+USED_WEIGHT = 0.1
+JUDGED_SHARE, JUDGED_PIXELS, JUDGED_TRUST = 0.06, 4.0, 0.03
 # an edge that leaves more than this of what it may is a texture's, and counts for nothing
 MOST_SPOILT = 3.0
 MOST_INDEPENDENT = 300.0
@@ -121,12 +123,9 @@ class OutlineMeter:
         seen = self._ring.look(centre, fine, blur, contrast)
         agreement = self._agreement(seen, FINE_TRUST, 0.0, expected.after(move))
         coverage, evidence = self._coverage(centre + agreement.move, blur, contrast)
-        refuse_clutter(
-            evidence,
-            core_sigma(agreement.residual_pixels[agreement.weights > 0.1]),
-            self._ring.size_pixels(centre),
-            predicted=predicted,
-        )
+        agreed = agreement.residual_pixels[agreement.weights > USED_WEIGHT]
+        size = self._ring.size_pixels(centre)
+        refuse_clutter(evidence, coverage, core_sigma(agreed), size, predicted=predicted)
         return self._judged(seen, agreement, blur, coverage, evidence)
 
     def _expected(self, centre: Array) -> Expectation:
@@ -200,7 +199,7 @@ class OutlineMeter:
         self, seen: Look, agreement: Agreement, blur: float, coverage: float, evidence: float
     ) -> SphereOutline:
         centre = seen.centre + agreement.move
-        measured = agreement.weights > 0.1
+        measured = agreement.weights > USED_WEIGHT
         measured &= ~beside_runs(~measured)
         pixels = seen.places.pixels + seen.normals * agreement.offsets_pixels[:, None]
         outline = OutlineRays.of(self._intrinsics, pixels)
