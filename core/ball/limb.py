@@ -27,6 +27,8 @@ CANDIDATES = 3
 # priors on both slopes, in units of noise over contrast, keep them from explaining noise
 SLOPE_PRIOR, DEPTH_PRIOR, DEPTH_UNIT = 5.0, 30.0, 4.0
 UNKNOWNS = 5
+# a picture without noise leaves nothing but rounding
+LEAST_MISFIT = 1e-9
 FACING_NODES = 240
 _erf = np.vectorize(erf, otypes=[float])
 
@@ -85,14 +87,15 @@ def find_limb(
         _in_steps(noise_to_contrast, 1.5),
     )
     count, _, channels = profiles.shape
-    samples = np.swapaxes(profiles, 0, 1).reshape(profiles.shape[1], -1)
-    total = (samples**2).sum(0)
-    rank = bases.shape[2]
-    amplitudes = bases.transpose(0, 2, 1).reshape(-1, len(samples)) @ samples
-    explained = (amplitudes**2).reshape(len(places), rank, -1).sum(1)
-    misfit = (total - explained).reshape(len(places), count, channels).sum(2)
-    without = (total - ((flat.T @ samples) ** 2).sum(0)).reshape(count, channels).sum(1)
-    return _edges(np.maximum(misfit, 1e-15), without, places)
+    # every basis holds the constant, so taking it off changes nothing but keeps the digits
+    centred = profiles - profiles.mean(axis=1, keepdims=True)
+    samples = np.ascontiguousarray(np.swapaxes(centred, 0, 1).reshape(profiles.shape[1], -1))
+    total = np.einsum("km,km->m", samples, samples).reshape(count, channels).sum(1)
+    amplitudes = (bases @ samples).reshape(len(places), UNKNOWNS, count, channels)
+    misfit = total - np.einsum("jpnc,jpnc->jn", amplitudes, amplitudes)
+    tilts = (flat.T @ samples).reshape(2, count, channels)
+    without = total - np.einsum("pnc,pnc->n", tilts, tilts)
+    return _edges(np.maximum(misfit, LEAST_MISFIT), np.maximum(without, LEAST_MISFIT), places)
 
 
 def _edges(misfit: Array, without: Array, places: Array) -> LimbEdges:
@@ -110,7 +113,7 @@ def _edges(misfit: Array, without: Array, places: Array) -> LimbEdges:
     return LimbEdges(
         places[best] + shift * PLACE_STEP,
         bend / PLACE_STEP**2,
-        np.maximum(at - 0.25 * (before - after) * shift, 1e-15),
+        np.maximum(at - 0.25 * (before - after) * shift, LEAST_MISFIT),
         np.isfinite(np.take_along_axis(low, order, 0)),
         without,
         float(places[-1]),
@@ -126,7 +129,7 @@ def _in_steps(value: float, ratio: float) -> float:
 def _bases(
     reach: Reach, search: float, blur: float, radius: float, noise_to_contrast: float
 ) -> tuple[Array, Array, Array]:
-    """Orthonormal bases (J, K, P) for every place (J,), and those of a profile without edge."""
+    """Orthonormal bases (J, P, K) for every place (J,), and those of a profile without edge."""
     offsets = reach.offsets()
     count = max(1, round(search / PLACE_STEP))
     places = np.arange(-count, count + 1) * PLACE_STEP
@@ -142,7 +145,7 @@ def _bases(
     prior[:, 1, 4] = DEPTH_PRIOR * noise_to_contrast
     bases = np.linalg.qr(np.concatenate([columns, prior], axis=1))[0][:, :-2]
     flat, _ = np.linalg.qr(np.stack([np.ones_like(offsets), offsets], axis=1))
-    return places, bases, flat
+    return places, np.ascontiguousarray(bases.transpose(0, 2, 1)), flat
 
 
 def _blurred(depth: Array, blur: float) -> tuple[Array, Array, Array]:

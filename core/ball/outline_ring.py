@@ -55,12 +55,30 @@ class Look:
         return weighed(self.edges, self.noise, self.freedom, self.inside, trust)
 
 
+@dataclass(frozen=True, eq=False)
+class _Profiles:
+    """Light (N, K, C) across N places of the outline of a ball at `centre`."""
+
+    centre: Array
+    reach: Reach
+    light: Array
+    places: OutlineRays
+    normals: Array
+    by_centre: Array
+    inside: Mask
+
+    def is_for(self, centre: Array, reach: Reach, count: int) -> bool:
+        same = self.reach == reach and len(self.normals) == count
+        return same and bool((self.centre == centre).all())
+
+
 class OutlineRing:
     """Looks in one picture of linear light (H, W, 3) whose corner is `origin` (2,)."""
 
     def __init__(self, light: Light, origin: Array, intrinsics: Intrinsics, radius: float) -> None:
         self._light, self._origin = light, origin
         self._intrinsics, self._radius = intrinsics, radius
+        self._last: _Profiles | None = None
 
     def look(
         self, centre: Array, search: float, blur: float, contrast: float, most: int = MOST_POINTS
@@ -75,20 +93,29 @@ class OutlineRing:
         reach = Reach(
             min(INWARDS + farther, 0.7 * size), min(OUTWARDS + farther, max(0.7 * size, 3.0))
         )
-        count = int(np.clip(2 * np.pi * size, FEWEST_POINTS, most))
+        ring = self._profiles(centre, reach, int(np.clip(2 * np.pi * size, FEWEST_POINTS, most)))
+        edges = find_limb(ring.light, reach, min(search, 0.35 * size), blur, size, contrast)
+        freedom = max(1, (ring.light.shape[1] - UNKNOWNS) * ring.light.shape[2] - 1)
+        noise = max(middle_of(edges.misfits[0]) / freedom, 1e-10)
+        return Look(
+            centre, ring.places, ring.normals, ring.by_centre, ring.inside, edges, noise, freedom
+        )
+
+    def _profiles(self, centre: Array, reach: Reach, count: int) -> _Profiles:
+        """Those around a centre; several looks at one place share them."""
+        if self._last is not None and self._last.is_for(centre, reach, count):
+            return self._last
         places = OutlineRays.around(self._intrinsics, centre, self._radius, count)
         if not np.isfinite(places.pixels).all():
             raise SphereNotFound("part of the outline lies outside what the lens images")
         held = tangency(places, centre, self._radius)
-        offsets = reach.offsets()
-        profiles = self._sampled(places.pixels[:, None] + held.normals[:, None] * offsets[:, None])
+        at = places.pixels[:, None] + held.normals[:, None] * reach.offsets()[:, None]
         beyond = BEYOND_EDGE * held.normals
         inside = self._intrinsics.contains(places.pixels + beyond)
         inside &= self._intrinsics.contains(places.pixels - beyond)
-        edges = find_limb(profiles, reach, min(search, 0.35 * size), blur, size, contrast)
-        freedom = max(1, (profiles.shape[1] - UNKNOWNS) * profiles.shape[2] - 1)
-        noise = max(middle_of(edges.misfits[0]) / freedom, 1e-10)
-        return Look(centre, places, held.normals, held.by_centre, inside, edges, noise, freedom)
+        light = self._sampled(at)
+        self._last = _Profiles(centre, reach, light, places, held.normals, held.by_centre, inside)
+        return self._last
 
     def _sampled(self, at: Array) -> Array:
         places = (at - self._origin).astype(np.float32)
