@@ -67,11 +67,14 @@ def shader_of(material: Any) -> Any | None:
     return next((node for node in nodes if node.type == "BSDF_PRINCIPLED"), None)
 
 
-def wood(name: str, dark: Sequence[float], light: Sequence[float]) -> Any:
-    """A laminate with straight grain along x, between two colours (3,) of linear light."""
+def wood(name: str, dark: Sequence[float], light: Sequence[float], grain: Sequence[float]) -> Any:
+    """A laminate between two colours (3,) of linear light.
+
+    Its pattern repeats `grain` (3,) times a metre along x, y, z: straight fibres where one is much
+    less than the others, blotches where all are alike.
+    """
     material = surface(name, light, roughness=0.42)
-    # long in x, so that the noise becomes fibres; a slow second noise makes the rings wander
-    fibres = _noise(material, scale=(1.2, 38.0, 1.0), detail=2.0, distortion=0.0)
+    fibres = _noise(material, scale=grain, detail=2.0, distortion=0.0)
     _ramp(material, fibres, ((0.30, dark), (0.52, light), (0.75, [0.93 * c for c in light])))
     return material
 

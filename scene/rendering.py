@@ -19,14 +19,21 @@ import numpy as np
 from ..core.arrays import Array
 from ..core.atomic import atomic_path
 from ..core.camera import Camera
-from ..core.errors import RenderFailed
-from ..core.picture.undistortion import distorted_picture, pinhole_around
+from ..core.errors import InvalidValue, RenderFailed
+from ..core.intrinsics import Intrinsics
+from ..core.picture.undistortion import (
+    distorted_picture,
+    distorted_window,
+    pinhole_around,
+    window_behind,
+)
 from .blender_camera import place_camera
 from .quiet import quiet_stdout
 
 CAMERA_NAME = "monocell camera"
 # how much finer the perfect picture is than the distorted one, along each side
 FINER = 2
+CUT = 0.01
 
 
 def set_up_cycles(scene: Any, *, samples: int, bounces: int = 2) -> None:
@@ -101,6 +108,55 @@ def render_linear(
     return linear
 
 
+def render_window(
+    scene: Any,
+    camera: Camera,
+    window: tuple[int, int, int, int],
+    *,
+    samples: int,
+    bounces: int = 2,
+) -> Array:
+    """What `camera` sees in `window` (x, y, width, height) of its picture as linear light.
+
+    (height, width, 3) float32, rows from the top, distortion included; nothing else is rendered.
+    Raises as `render_linear`, and InvalidValue for a window that is not inside the picture.
+    """
+    set_up_cycles(scene, samples=samples, bounces=bounces)
+    intrinsics = camera.intrinsics
+    x, y, width, height = window
+    if min(x, y) < 0 or min(width, height) < 1 or not _ends_inside(intrinsics, window):
+        raise InvalidValue(
+            f"window: {list(window)} is not inside the picture of "
+            f"{intrinsics.width} x {intrinsics.height} px"
+        )
+    if intrinsics.distortion.model == "none":
+        return _cropped(scene, camera, window)
+    pinhole = pinhole_around(intrinsics, FINER)
+    behind = window_behind(pinhole, intrinsics, window)
+    scene.cycles.samples = math.ceil(samples / FINER**2)
+    scene.cycles.use_adaptive_sampling = False
+    perfect = _cropped(scene, Camera(pinhole, camera.pose), behind)
+    return distorted_window(perfect, behind[:2], pinhole, intrinsics, window)
+
+
+def _ends_inside(intrinsics: Intrinsics, window: tuple[int, int, int, int]) -> bool:
+    x, y, width, height = window
+    return x + width <= intrinsics.width and y + height <= intrinsics.height
+
+
+def _cropped(scene: Any, camera: Camera, window: tuple[int, int, int, int]) -> Array:
+    _place(scene, camera)
+    _set_border(scene.render, window)
+    scene.render.use_crop_to_border = True
+    try:
+        light = _linear(scene)
+    finally:
+        scene.render.use_border = scene.render.use_crop_to_border = False
+    if light.shape[:2] != (window[3], window[2]):
+        raise RenderFailed(f"Cycles gave {light.shape[1]} x {light.shape[0]} px for {list(window)}")
+    return light
+
+
 def _distorted(scene: Any, camera: Camera, *, samples: int) -> Array:
     pinhole = pinhole_around(camera.intrinsics, FINER)
     _place(scene, Camera(pinhole, camera.pose))
@@ -122,9 +178,12 @@ def _place(scene: Any, camera: Camera) -> None:
 def _set_border(render: Any, window: tuple[int, int, int, int]) -> None:
     x, y, width, height = window
     w, h = render.resolution_x, render.resolution_y
-    render.border_min_x, render.border_max_x = x / w, (x + width) / w
-    # Blender counts rows from below
-    render.border_min_y, render.border_max_y = 1 - (y + height) / h, 1 - y / h
+    # Blender cuts to whole pixels after rounding to single precision: a little more is safe
+    low, high = x + CUT, x + width + CUT
+    render.border_min_x, render.border_max_x = low / w, high / w
+    # and it counts rows from below
+    low, high = h - y - height + CUT, h - y + CUT
+    render.border_min_y, render.border_max_y = low / h, high / h
     render.use_border, render.use_crop_to_border = True, False
 
 

@@ -15,7 +15,7 @@ from ..core.pose import Pose
 from .materials import mottled, surface, wood
 from .meshes import box, fill_mesh
 from .transforms import matrix_of
-from .work_cell import Table, WorkCell
+from .work_cell import Lab, Table, WorkCell
 
 TOP_THICKNESS, SHEET = 0.036, 0.002
 LEG = 0.06
@@ -24,6 +24,8 @@ LINE_DISTANCE, LINE_WIDTH = 0.35, 0.06
 WALL_HEIGHT, WALL_THICKNESS = 2.2, 0.1
 DADO_HEIGHT = 0.95
 ROOM = 9.0
+STAIN = 0.68
+LAMP_DISTANCE = 2.7
 # nearer things than this shade each other from the ambient light, metres
 AMBIENT_REACH = 0.025
 
@@ -40,15 +42,35 @@ class _Band:
 
 def build_room(scene: Any, cell: WorkCell) -> None:
     """Build all that does not move. The walls stand on the far sides, as seen from the camera."""
-    _build_table(scene, cell.table)
+    _build_table(scene, cell.table, cell.lab)
     away = -np.sign(cell.camera.centre_world[:2] - cell.table.centre)
     away[away == 0] = 1.0
-    _build_shell(scene, cell.table, away)
-    _build_light(scene, cell, away)
+    _build_shell(scene, cell.table, cell.lab, away)
+    _build_light(scene, cell)
 
 
-def _build_table(scene: Any, table: Table) -> None:
-    laminate = wood("table top", (0.40, 0.255, 0.135), (0.56, 0.39, 0.225))
+def lamp_place(cell: WorkCell) -> Array:
+    """Where the lamp stands in the world, (3,): what it shines on casts its shadow away from it."""
+    target = np.array([*cell.table.centre, 0.1])
+    if cell.lab.to_lamp is not None:
+        there: Array = cell.lab.to_lamp * (LAMP_DISTANCE / np.linalg.norm(cell.lab.to_lamp))
+        return target + there
+    away = _far_sides(cell)
+    # over the camera's shoulder and to its side, as a lamp on a tripod would stand
+    side = np.array([away[1], -away[0]]) if away[0] * away[1] > 0 else np.array([-away[1], away[0]])
+    return target + np.array([*(-away * 0.9 + side * 1.1), 2.3])
+
+
+def _far_sides(cell: WorkCell) -> Array:
+    """In x and y, the sign of the side that the camera looks towards."""
+    away: Array = -np.sign(cell.camera.centre_world[:2] - cell.table.centre)
+    away[away == 0] = 1.0
+    return away
+
+
+def _build_table(scene: Any, table: Table, lab: Lab) -> None:
+    colors = lab.table_dark.tolist(), lab.table_light.tolist()
+    laminate = wood("table top", *colors, lab.grain.tolist())
     edge = surface("table edge", (0.028, 0.03, 0.034), roughness=0.5)
     frame = surface("table frame", (0.42, 0.43, 0.45), roughness=0.35, metallic=0.9)
     x, y = table.centre
@@ -63,10 +85,11 @@ def _build_table(scene: Any, table: Table) -> None:
         _block(scene, "table leg", (LEG, LEG, below), middle, frame)
 
 
-def _build_shell(scene: Any, table: Table, away: Array) -> None:
-    floor = mottled("floor", (0.145, 0.15, 0.16), (0.215, 0.22, 0.23), 1.6, 0.6)
-    upper = surface("wall", (0.58, 0.60, 0.61), roughness=0.9)
-    lower = surface("dado", (0.075, 0.135, 0.18), roughness=0.7)
+def _build_shell(scene: Any, table: Table, lab: Lab, away: Array) -> None:
+    stained = (STAIN * lab.floor).tolist()
+    floor = mottled("floor", stained, lab.floor.tolist(), 1.6, 0.6)
+    upper = surface("wall", lab.wall.tolist(), roughness=0.9)
+    lower = surface("dado", lab.dado.tolist(), roughness=0.7)
     trim = surface("trim", (0.72, 0.73, 0.74), roughness=0.6)
     ground = -table.height
     _keep_out_line(scene, table)
@@ -108,18 +131,16 @@ def _add_wall(scene: Any, table: Table, axis: int, away: float, band: _Band) -> 
     _block(scene, "wall", size, centre, band.material)
 
 
-def _build_light(scene: Any, cell: WorkCell, away: Array) -> None:
-    target = np.array([*cell.table.centre, 0.1])
-    # over the camera's shoulder and to its side, as a lamp on a tripod would stand
-    side = np.array([away[1], -away[0]]) if away[0] * away[1] > 0 else np.array([-away[1], away[0]])
-    key = target + np.array([*(-away * 0.9 + side * 1.1), 2.3])
-    _area(scene, "key", key, target, size=0.9, watts=95.0 * cell.light, color=(1.0, 0.96, 0.90))
+def _build_light(scene: Any, cell: WorkCell) -> None:
+    lab, target = cell.lab, np.array([*cell.table.centre, 0.1])
+    key, watts = lamp_place(cell), lab.lamp_watts * cell.light
+    _area(scene, "key", key, target, size=lab.lamp_size, watts=watts, color=(1.0, 0.96, 0.90))
     world = bpy.data.worlds.new("monocell stage")
     if bpy.app.version < (5, 0):
         world.use_nodes = True
     background = next(n for n in world.node_tree.nodes if n.type == "BACKGROUND")
     background.inputs["Color"].default_value = (0.86, 0.93, 1.0, 1.0)
-    background.inputs["Strength"].default_value = 0.55 * cell.light
+    background.inputs["Strength"].default_value = lab.ambient * cell.light
     scene.world = world
     _ambient_instead_of_bounces(scene)
 

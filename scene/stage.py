@@ -20,15 +20,17 @@ from ..core.arrays import Array
 from ..core.camera import Camera
 from ..core.closing import Closing
 from ..core.mesh_part import MeshPart
+from ..core.pose import Pose
 from ..core.primitives import Primitive
 from .arm_meshes import import_mesh
 from .gripper import Block, grip_frame, gripper_blocks
 from .materials import PLAIN, surface
 from .meshes import Shape, box, cylinder, fill_mesh, shape_of, sphere
-from .rendering import render_linear, render_picture
+from .panel import STUB_RADIUS, build_panel, remove_print, stub_centre
+from .rendering import render_linear, render_picture, render_window
 from .room import build_room
 from .transforms import matrix_of
-from .work_cell import Ball, WorkCell
+from .work_cell import Ball, Panel, WorkCell
 
 SAMPLES = 4
 BOUNCES = 1
@@ -43,6 +45,7 @@ class Stage(Closing):
         self._arm: list[tuple[Path, tuple[Any, ...]]] = []
         self._ball: Any = None
         self._gripper: list[Any] = []
+        self._panel: list[Any] = []
         # what did not move is not sent to Cycles again
         self.scene.render.use_persistent_data = True
         build_room(self.scene, cell)
@@ -62,7 +65,18 @@ class Stage(Closing):
             placed = matrix_of(part.world_from_mesh) @ Matrix.Diagonal((*part.scale, 1.0))
             for ob in obs:
                 ob.matrix_world = placed
+        self._remove_panel()
         self._show_ball(ball)
+
+    def hold(self, panel: Panel | None) -> None:
+        """Put a printed panel into the gripper in the ball's stead, or take it away."""
+        self._remove_panel()
+        self._remove_ball()
+        if panel is None:
+            return
+        self._panel = build_panel(self.scene, panel)
+        if panel.world_from_flange is not None:
+            self._show_gripper(stub_centre(panel), STUB_RADIUS, panel.world_from_flange)
 
     def render(
         self, path: str | Path, *, camera: Camera | None = None, samples: int = SAMPLES
@@ -76,10 +90,25 @@ class Stage(Closing):
         camera = camera or self.cell.camera
         return render_linear(self.scene, camera, samples=samples, bounces=BOUNCES)
 
+    def window(
+        self,
+        window: tuple[int, int, int, int],
+        *,
+        camera: Camera | None = None,
+        samples: int = SAMPLES,
+    ) -> Array:
+        """Linear light of `window` (x, y, width, height) of the picture alone, (height, width, 3).
+
+        Raises InvalidValue for a window that is not inside the picture.
+        """
+        camera = camera or self.cell.camera
+        return render_window(self.scene, camera, window, samples=samples, bounces=BOUNCES)
+
     def close(self) -> None:
         """Remove the scene and all that was built for it."""
         # Cycles lets go of the scene; without this Blender crashes when it ends
         self.scene.render.use_persistent_data = False
+        remove_print(self._panel)
         obs, world = list(self.scene.collection.all_objects), self.scene.world
         bpy.data.scenes.remove(self.scene)
         _remove(obs)
@@ -102,9 +131,12 @@ class Stage(Closing):
         if ball.world_from_flange is None:
             self._remove_gripper()
             return
-        world_from_grip = grip_frame(ball.center_world, ball.world_from_flange)
-        reach = float(np.linalg.norm(ball.center_world - ball.world_from_flange.translation))
-        blocks = gripper_blocks(ball.radius, reach)
+        self._show_gripper(ball.center_world, ball.radius, ball.world_from_flange)
+
+    def _show_gripper(self, centre: Array, radius: float, world_from_flange: Pose) -> None:
+        world_from_grip = grip_frame(centre, world_from_flange)
+        reach = float(np.linalg.norm(centre - world_from_flange.translation))
+        blocks = gripper_blocks(radius, reach)
         if len(self._gripper) != len(blocks):
             self._remove_gripper()
             self._gripper = [self._add_block(block) for block in blocks]
@@ -112,7 +144,7 @@ class Stage(Closing):
             ob.matrix_world = matrix_of(world_from_grip @ block.grip_from_block)
 
     def _add_ball(self, ball: Ball) -> None:
-        material = surface("ball", ball.color.tolist(), roughness=0.55)
+        material = surface("ball", ball.color.tolist(), roughness=ball.roughness)
         self._ball = self._add("ball", sphere(ball.radius), material)
         self._ball["radius"] = ball.radius
 
@@ -142,6 +174,11 @@ class Stage(Closing):
             _remove([self._ball])
         self._ball = None
         self._remove_gripper()
+
+    def _remove_panel(self) -> None:
+        remove_print(self._panel)
+        _remove(self._panel)
+        self._panel = []
 
     def _remove_gripper(self) -> None:
         _remove(self._gripper)

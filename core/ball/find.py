@@ -82,9 +82,16 @@ def find_sphere(
 
 
 def measure_sphere(
-    picture: Picture, intrinsics: Intrinsics, radius: float, rough_centre_camera: Array
+    picture: Picture,
+    intrinsics: Intrinsics,
+    radius: float,
+    rough_centre_camera: Array,
+    *,
+    predicted: bool = False,
 ) -> SphereOutline:
     """The ball near a known place (3,) in the camera frame, to a few pixels.
+
+    A place `predicted` by a pose is known to a fraction of a pixel, and searched as closely.
 
     Raises SphereNotFound and SphereCut, as `find_spheres`.
     """
@@ -95,7 +102,7 @@ def measure_sphere(
     )
     light = linear_light(np.ascontiguousarray(picture[top : top + height, left : left + width]))
     meter = OutlineMeter(light, np.array([left, top], dtype=float), intrinsics, radius)
-    return meter.measure(rough_centre_camera)
+    return meter.measure(rough_centre_camera, predicted=predicted)
 
 
 def _first_clear(

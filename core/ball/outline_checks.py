@@ -9,7 +9,9 @@ LEAST_COVERAGE, DOUBTFUL_COVERAGE = 0.35, 0.5
 LARGEST_CUT = 0.25
 SMALLEST_PIXELS, FEWEST_USED = 4.0, 8
 # sigmas over chance that an outline has to stand out by, and by which it may be loose
-LEAST_EVIDENCE, CLEAR_EVIDENCE, LOOSE_SHARE = 4.5, 6.5, 0.04
+LEAST_EVIDENCE, CLEAR_EVIDENCE, LOOSE_SHARE = 8.0, 9.0, 0.03
+# where the ball's other places predict it, chance has hardly room
+LEAST_EVIDENCE_WHERE_PREDICTED = 1.5
 
 
 def cut_refusal(cut: float) -> SphereCut:
@@ -51,13 +53,20 @@ def refuse_few(used: int, of: int) -> None:
         )
 
 
-def refuse_clutter(evidence: float, rms: float, size: float) -> None:
-    """Edges of a texture agree with some circle too, but by less and not as well."""
-    loose = evidence < CLEAR_EVIDENCE and rms > LOOSE_SHARE * size
-    if evidence < LEAST_EVIDENCE or loose:
+def refuse_clutter(
+    evidence: float, coverage: float, rms: float, size: float, *, predicted: bool
+) -> None:
+    """Edges of a texture agree with some circle too, but by less, not as well, or in part."""
+    least = LEAST_EVIDENCE
+    if rms > LOOSE_SHARE * size or coverage < DOUBTFUL_COVERAGE:
+        least = CLEAR_EVIDENCE
+    if predicted:
+        least = LEAST_EVIDENCE_WHERE_PREDICTED
+    if evidence < least:
         raise SphereNotFound(
             f"the edges make a circle of {size:.0f} px radius only {evidence:.1f} sigmas better "
-            f"than chance, {rms:.1f} px rms off it"
+            f"than chance ({least:g} are needed), {rms:.1f} px rms off it, and "
+            f"{100 * coverage:.0f} % of it are seen"
         )
 
 

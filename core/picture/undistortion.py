@@ -69,17 +69,54 @@ def distorted_picture(
     no ray reaches are black.
     """
     _check_size(perfect, pinhole)
-    centres = pinhole.project(intrinsics.rays(_pixel_centres(intrinsics)))
-    grid = centres.reshape(intrinsics.height, intrinsics.width, 2)
+    whole = (0, 0, intrinsics.width, intrinsics.height)
+    return distorted_window(perfect, (0, 0), pinhole, intrinsics, whole)
+
+
+def distorted_window(
+    perfect: NDArray[np.float32],
+    origin: tuple[int, int],
+    pinhole: Intrinsics,
+    intrinsics: Intrinsics,
+    window: tuple[int, int, int, int],
+) -> NDArray[np.float32]:
+    """`distorted_picture` of `window` (x, y, width, height) alone, (height, width, 3).
+
+    `perfect` is the part of the finer picture whose top left pixel is `origin` there.
+    """
+    x, y, width, height = window
+    v, u = np.mgrid[y : y + height, x : x + width]
+    rays = intrinsics.rays(np.stack([u.ravel(), v.ravel()], axis=1))
+    grid = (pinhole.project(rays) - origin).reshape(height, width, 2)
     # inside a pixel the map is as good as linear
     down, right = np.gradient(grid, axis=(0, 1))
     steps = (np.arange(POINTS_PER_SIDE) + 0.5) / POINTS_PER_SIDE - 0.5
-    total = np.zeros((*grid.shape[:2], 3), np.float32)
+    total = np.zeros((height, width, 3), np.float32)
     for dv in steps:
         for du in steps:
-            points = grid + du * right + dv * down
-            total += _remapped(perfect, _as_map(points, intrinsics), cv2.INTER_LINEAR)
+            place = np.nan_to_num(grid + du * right + dv * down, nan=-1e4).astype(np.float32)
+            total += _remapped(perfect, place, cv2.INTER_LINEAR)
     return total / np.float32(POINTS_PER_SIDE**2)
+
+
+def window_behind(
+    pinhole: Intrinsics, intrinsics: Intrinsics, window: tuple[int, int, int, int]
+) -> tuple[int, int, int, int]:
+    """The part of the finer picture by `pinhole` that `distorted_window` needs, a window there.
+
+    Raises InvalidValue when the lens sees nothing in some part of the window's rim.
+    """
+    x, y, width, height = window
+    across, down = np.linspace(x - 1, x + width, 64), np.linspace(y - 1, y + height, 64)
+    sides = [np.stack([across, np.full(64, at)], 1) for at in (down[0], down[-1])]
+    sides += [np.stack([np.full(64, at), down], 1) for at in (across[0], across[-1])]
+    seen = pinhole.project(intrinsics.rays(np.concatenate(sides)))
+    if not np.isfinite(seen).all():
+        raise InvalidValue(f"window: the lens images nothing in a part of {list(window)}")
+    size = [pinhole.width, pinhole.height]
+    low = np.clip(np.floor(seen.min(axis=0)).astype(int) - 2, 0, size)
+    high = np.clip(np.ceil(seen.max(axis=0)).astype(int) + 3, 0, size)
+    return int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
 
 
 def _check_size(picture: NDArray[Any], intrinsics: Intrinsics) -> None:

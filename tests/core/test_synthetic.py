@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from monocell.core import Distortion, Intrinsics
-from monocell.core.ball.limb import find_limb, sample_offsets
+from monocell.core.ball.limb import Reach, find_limb
 from monocell.core.ball.sphere import outline_pixels
 from monocell.core.picture.pictures import linear_light
 from monocell.core.picture.synthetic import Ball, Photographer, photograph
@@ -80,20 +80,22 @@ def profile(offsets, edge, radius, blur, ball=(0.3, 0.5), wall=(0.1, 0.004)):
 )
 @pytest.mark.parametrize("radius", [12.0, 60.0])
 def test_the_limb_is_found_where_it_is_and_not_where_the_light_changes_most(ball, radius):
-    offsets = sample_offsets(5.0)
+    reach = Reach(5.0, 5.0)
+    offsets = reach.offsets()
     edges = np.array([-1.3, -0.4, 0.0, 0.31, 1.7])
     profiles = np.stack([profile(offsets, e, radius, 0.8, ball) for e in edges])[:, :, None]
-    found = find_limb(profiles, 5.0, 2.5, 0.8, radius)
-    np.testing.assert_allclose(found.offsets_pixels, edges, atol=0.06)
-    assert (found.gains > 10 * found.misfits).all()
+    found = find_limb(profiles, reach, 2.5, 0.8, radius)
+    np.testing.assert_allclose(found.offsets_pixels[0], edges, atol=0.06)
+    assert (found.flat_misfits > 10 * found.misfits[0]).all()
 
 
 def test_the_limb_s_stated_curvature_is_that_of_its_scatter():
     rng = np.random.default_rng(0)
-    offsets = sample_offsets(5.0)
+    reach = Reach(5.0, 5.0)
+    offsets = reach.offsets()
     clean = profile(offsets, 0.2, 30.0, 0.8)
     noise = 0.01
     noisy = clean + rng.normal(0, noise, (600, len(offsets)))
-    found = find_limb(noisy[:, :, None], 5.0, 2.0, 0.8, 30.0, 0.03)
-    stated = np.sqrt(2 * noise**2 / found.curvatures)
-    assert found.offsets_pixels.std() == pytest.approx(np.median(stated), rel=0.35)
+    found = find_limb(noisy[:, :, None], reach, 2.0, 0.8, 30.0, 0.03)
+    stated = np.sqrt(2 * noise**2 / found.curvatures[0])
+    assert found.offsets_pixels[0].std() == pytest.approx(np.median(stated), rel=0.35)
