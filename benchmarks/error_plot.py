@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-WIDTH, STRIP, TOP, BOTTOM, LEFT, RIGHT, GAP = 1100, 190, 24, 62, 118, 230, 26
+WIDTH, STRIP, TOP, BOTTOM, LEFT, RIGHT, GAP = 1160, 190, 24, 62, 96, 290, 26
 # all is drawn four times as large and shrunk, which smooths it
 SHRINK = 4
 PAPER, INK, FAINT, GRID = (255, 255, 255), (45, 40, 38), (120, 112, 108), (226, 222, 220)
@@ -19,10 +19,11 @@ TICKS = 3
 
 @dataclass(frozen=True, eq=False)
 class Strip:
-    """A name and one error (N,) a ball."""
+    """A name, one error (N,) a ball, and lines of text that stand beside them."""
 
     name: str
     errors: np.ndarray
+    notes: tuple[str, ...] = ()
 
 
 def draw_strips(strips: Sequence[Strip], along: str, unit: str) -> np.ndarray:
@@ -66,7 +67,8 @@ def _draw(canvas: np.ndarray, strip: Strip, top: int, unit: str) -> None:
     _text(canvas, strip.name, right + 16, top + 40, INK, 0.62, 0)
     _text(canvas, f"mean {mean:+.4f} %", right + 16, top + 76, MEAN, 0.5, 0)
     _text(canvas, f"s.d. {spread:.4f} %", right + 16, top + 102, DOT, 0.5, 0)
-    _text(canvas, unit, right + 16, top + 136, FAINT, 0.42, 0)
+    for k, note in enumerate((unit, *strip.notes)):
+        _text(canvas, note, right + 16, top + 128 + 20 * k, FAINT, 0.42, 0)
 
 
 def _step(largest: float) -> float:

@@ -47,20 +47,21 @@ def main() -> None:
     rig = rendered_rig(random_plan("paper", SEED), bare=True, cache=args.cache)
     rows = [("the paper", "about 80", *_figures(PAPER_MEAN, PAPER_SPREAD))]
     percents: dict[str, np.ndarray] = {}
+    millimetres: dict[str, np.ndarray] = {}
     joint = []
     for name, how in CLASSES.items():
         outlines = _outlines(rig, how)
         off, off_joint, told = _errors(rig, outlines)
         rows.append((f"one ball alone, {name}", str(len(off)), *_millimetres(off)))
         rows.append((f"by the joint pose, {name}", "80", *_millimetres(off_joint)))
-        percents[name] = _percent(rig, outlines, off)
+        percents[name], millimetres[name] = _percent(rig, outlines, off), 1e3 * off
         joint.append((name, *told))
     header = ("error in mm: mean ± standard deviation", "balls", *AXES)
     print(table(header, rows), end="\n\n")
     print(table(("percent of the distance", "", *AXES), _percent_rows(percents)), end="\n\n")
     print(table(("joint calibration", "balls", "verdict", "camera mm", "deg"), joint))
     if args.out:
-        strips = [Strip(AXES[i], percents["clean"][:, i]) for i in range(3)]
+        strips = [_strip(i, percents["clean"], millimetres["clean"]) for i in range(3)]
         write_picture(args.out, draw_strips(strips, "ball, from near to far", "% of the distance"))
 
 
@@ -101,6 +102,15 @@ def _percent(rig: RenderedRig, outlines: list, off: np.ndarray) -> np.ndarray:
     seen = [i for i, outline in enumerate(outlines) if outline is not None]
     distance = np.linalg.norm(rig.plan.camera.pose.apply(rig.plan.positions[seen]), axis=1)
     return (100 * off / distance[:, None])[np.argsort(distance)]
+
+
+def _strip(axis: int, percent: np.ndarray, off_millimetres: np.ndarray) -> Strip:
+    here = off_millimetres[:, axis]
+    notes = (
+        f"here: {here.mean():+.2f} mm, s.d. {here.std():.2f} mm",
+        f"paper: {PAPER_MEAN[axis]:+.2f} mm, s.d. {PAPER_SPREAD[axis]:.2f} mm",
+    )
+    return Strip(AXES[axis], percent[:, axis], notes)
 
 
 def _percent_rows(percents: dict[str, np.ndarray]) -> list[tuple[str, ...]]:
