@@ -132,7 +132,7 @@ def _timed(name: str, plan: RigPlan, job: Callable[[], Pose | None], before: flo
 
 
 def _pictures(rig: RenderedRig, how: Development) -> list[np.ndarray]:
-    gain = exposure_gain(rig)
+    gain = exposure_gain(rig, how)
     return [
         as_file_gives(developed(rig.light(i), gain, how, (rig.plan.seed, i)), how)
         for i in range(len(rig.plan.positions))
