@@ -36,8 +36,8 @@ class Development:
     `noise_grey_levels` the sigma of the noise at middle grey, alike everywhere in the encoded
     picture, or with `photons` as light itself has it: more in bright places, less in dark ones.
     `halved` bins 2 x 2 pixels. `jpeg_quality` None is a PNG. `burnt` exposes for the room, whatever
-    becomes of the ball: where light ends at white, a bright ball's outline moves outwards by a tenth
-    of a pixel. Otherwise the exposure spares the ball, as a photographer's does.
+    becomes of the ball: where light ends at white, a bright ball's outline moves out by a tenth of
+    a pixel. Otherwise the exposure spares the ball, as a photographer's does.
     """
 
     blur_pixels: float = 0.5
