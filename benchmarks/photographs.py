@@ -24,6 +24,8 @@ from rig_plans import RADIUS, RigPlan
 # linear light of an encoded value of one half, and what one unit of light is there in code
 MIDDLE, CODE_BY_LIGHT = 0.214, 1.08
 READ_SHARE = 0.1
+# of what stands in the ball's surroundings this share stays below this part of white
+SPARED, WHITE = 0.99, 0.95
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,9 @@ class Development:
     `blur_pixels` is the sigma of the lens' blur and `motion_pixels` the length of a straight shake;
     `noise_grey_levels` the sigma of the noise at middle grey, alike everywhere in the encoded
     picture, or with `photons` as light itself has it: more in bright places, less in dark ones.
-    `halved` bins 2 x 2 pixels. `jpeg_quality` None is a PNG.
+    `halved` bins 2 x 2 pixels. `jpeg_quality` None is a PNG. `burnt` exposes for the room, whatever
+    becomes of the ball: where light ends at white, a bright ball's outline moves out by a tenth of
+    a pixel. Otherwise the exposure spares the ball, as a photographer's does.
     """
 
     blur_pixels: float = 0.5
@@ -42,6 +46,7 @@ class Development:
     photons: bool = False
     jpeg_quality: int | None = None
     halved: bool = False
+    burnt: bool = False
 
     def told(self) -> str:
         """In a few words."""
@@ -49,7 +54,8 @@ class Development:
         parts[1] += "p" if self.photons else ""
         parts += [f"motion {self.motion_pixels:.1f}"] if self.motion_pixels else []
         parts += ["png" if self.jpeg_quality is None else f"jpeg {self.jpeg_quality}"]
-        return " ".join([*parts, *(["halved"] if self.halved else [])])
+        parts += [name for name in ("halved", "burnt") if getattr(self, name)]
+        return " ".join(parts)
 
 
 def random_development(seed: int) -> Development:
@@ -62,6 +68,7 @@ def random_development(seed: int) -> Development:
         photons=bool(rng.random() < 0.5),
         jpeg_quality=[None, 95, 90, 80, 70][rng.integers(5)],
         halved=bool(rng.random() < 0.15),
+        burnt=bool(rng.random() < 0.2),
     )
 
 
@@ -71,7 +78,7 @@ def photograph_rig(rig: RenderedRig, how: Development, folder: Path) -> Cell:
     sightings = []
     for i, place in enumerate(rig.plan.positions):
         name = f"pose_{i:02d}.{ending}"
-        picture = developed(rig.light(i), exposure_gain(rig), how, (rig.plan.seed, i))
+        picture = developed(rig.light(i), exposure_gain(rig, how), how, (rig.plan.seed, i))
         if how.jpeg_quality is None:
             write_picture(folder / name, picture)
         else:
@@ -98,9 +105,15 @@ def given_intrinsics(plan: RigPlan, how: Development) -> Intrinsics:
     )
 
 
-def exposure_gain(rig: RenderedRig) -> float:
-    """What brings the middle brightness of the empty picture to the plan's exposure."""
-    return rig.plan.exposure / float(np.median(rig.background.astype(np.float32).mean(axis=2)))
+def exposure_gain(rig: RenderedRig, how: Development) -> float:
+    """What brings the middle brightness of the empty picture to the plan's exposure, or less."""
+    middle = float(np.median(rig.background.astype(np.float32).mean(axis=2)))
+    gain = rig.plan.exposure / middle
+    if how.burnt:
+        return gain
+    around = [patches[-1].light.reshape(-1, 3).max(axis=1) for patches in rig.patches]
+    brightest = float(np.quantile(np.concatenate(around).astype(np.float32), SPARED))
+    return min(gain, WHITE / brightest)
 
 
 def developed(

@@ -60,24 +60,18 @@ class RenderedRig:
 
 def rendered_rig(plan: RigPlan, *, bare: bool = False, cache: Path = CACHE) -> RenderedRig:
     """The rig from the cache, or rendered now and put there. `bare`: the ball without gripper."""
-    digest = _digest(plan)
+    digest = digest_of(plan)
     empty = cache / f"{plan.name}-{digest}-empty.npz"
     file = cache / f"{plan.name}-{digest}-{'bare' if bare else 'held'}.npz"
     if not (empty.is_file() and file.is_file()):
         _render(plan, bare, empty, file)
     with np.load(file) as kept:
-        patches = tuple(
-            tuple(
-                Patch(tuple(kept[f"{i}.{k}.corner"].tolist()), kept[f"{i}.{k}"])
-                for k in range(int(kept[f"{i}.layers"]))
-            )
-            for i in range(len(plan.positions))
-        )
+        patches = kept_patches(kept, len(plan.positions))
     with np.load(empty) as kept:
         return RenderedRig(plan, kept["light"], patches)
 
 
-def _digest(plan: RigPlan) -> str:
+def digest_of(plan: RigPlan) -> str:
     """Of all that shows in the pictures, to nine digits: processors differ in the last."""
     lens, lab = plan.camera.intrinsics, plan.lab
     numbers = [
@@ -100,33 +94,57 @@ def _render(plan: RigPlan, bare: bool, empty: Path, file: Path) -> None:
     with Stage(WorkCell(plan.camera, lab=plan.lab)) as stage:
         if not empty.is_file():
             light = stage.linear(samples=BACKGROUND_SAMPLES)
-            _keep(empty, {"light": light.astype(np.float16)})
+            keep(empty, {"light": light.astype(np.float16)})
         kept: dict[str, np.ndarray] = {}
         for i in range(len(plan.positions)):
-            layers = _sighting(stage, plan, i, bare)
-            kept[f"{i}.layers"] = np.array(len(layers))
-            for k, (window, light) in enumerate(layers):
-                kept[f"{i}.{k}.corner"] = np.array(window[:2])
-                kept[f"{i}.{k}"] = light.astype(np.float16)
-        _keep(file, kept)
+            keep_layers(kept, stage, i, _sighting(stage, plan, i, bare))
+        keep(file, kept)
 
 
-def _keep(file: Path, arrays: dict[str, np.ndarray]) -> None:
+def keep_layers(
+    kept: dict[str, np.ndarray], stage, i: int, layers: list[tuple[Window, int]]
+) -> None:
+    """Render windows, each with its samples, and name them as layers of sighting `i`."""
+    kept[f"{i}.layers"] = np.array(len(layers))
+    for k, (window, samples) in enumerate(layers):
+        kept[f"{i}.{k}.corner"] = np.array(window[:2])
+        kept[f"{i}.{k}"] = stage.window(window, samples=samples).astype(np.float16)
+
+
+def kept_patches(kept, count: int) -> tuple[tuple[Patch, ...], ...]:
+    """The layers of `count` sightings from a file."""
+    return tuple(
+        tuple(
+            Patch(tuple(kept[f"{i}.{k}.corner"].tolist()), kept[f"{i}.{k}"])
+            for k in range(int(kept[f"{i}.layers"]))
+        )
+        for i in range(count)
+    )
+
+
+def keep(file: Path, arrays: dict[str, np.ndarray]) -> None:
     with atomic_path(file) as temporary, temporary.open("wb") as stream:
         np.savez_compressed(stream, **arrays)
 
 
-def _sighting(stage, plan: RigPlan, i: int, bare: bool) -> list[tuple[Window, np.ndarray]]:
+def _sighting(stage, plan: RigPlan, i: int, bare: bool) -> list[tuple[Window, int]]:
+    """Put the ball there; the windows to render, coarse to fine, each with its samples."""
     flange = None if bare else plan.flanges[i]
     stage.move((), Ball(plan.positions[i], RADIUS, plan.ball_color, flange, plan.ball_roughness))
-    layers = [(window, SHADOW_SAMPLES) for window in [_shadow(stage.cell, plan, i, bare)] if window]
+    things = plan.positions[i] + RADIUS * np.vstack([np.eye(3), -np.eye(3)])
+    layers = []
     if not bare:
-        pixels = plan.camera.project(_gripper_corners(plan, i))
-        layers.append((_window(plan, pixels, GRIPPER_MARGIN), GRIPPER_SAMPLES))
+        corners = _gripper_corners(plan, i)
+        things = np.concatenate([things, corners])
+        pixels = plan.camera.project(corners)
+        layers.append((window_around(plan, pixels, GRIPPER_MARGIN), GRIPPER_SAMPLES))
+    shadow = shadow_window(stage.cell, plan, things)
+    if shadow is not None:
+        layers.insert(0, (shadow, SHADOW_SAMPLES))
     middle = plan.camera.pose.apply(plan.positions[i])
     outline = outline_pixels(plan.camera.intrinsics, middle, RADIUS)
-    layers.append((_window(plan, outline, BALL_MARGIN), BALL_SAMPLES))
-    return [(window, stage.window(window, samples=samples)) for window, samples in layers]
+    layers.append((window_around(plan, outline, BALL_MARGIN), BALL_SAMPLES))
+    return layers
 
 
 def _gripper_corners(plan: RigPlan, i: int) -> np.ndarray:
@@ -134,20 +152,16 @@ def _gripper_corners(plan: RigPlan, i: int) -> np.ndarray:
     return np.concatenate([corners_world(*part) for part in parts])
 
 
-def _shadow(cell: WorkCell, plan: RigPlan, i: int, bare: bool) -> Window | None:
-    """Where the shadow falls on the table's plane, and on the floor where it misses the table."""
+def shadow_window(cell: WorkCell, plan: RigPlan, things: np.ndarray) -> Window | None:
+    """Where the shadow of points (N, 3) falls on the table, or on the floor where it misses it."""
     from monocell.scene.room import lamp_place
 
-    around = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    points = [plan.positions[i] + RADIUS * around]
-    if not bare:
-        points.append(_gripper_corners(plan, i))
-    things, lamp = np.concatenate(points), lamp_place(cell)
+    lamp = lamp_place(cell)
     # a lamp of some size: the shadow reaches as far as that of its rim's nearest point
     half = 0.5 * plan.lab.lamp_size * np.vstack([np.eye(3)[:2], -np.eye(3)[:2]])
     fallen = [_fallen(cell, lamp + rim, things) for rim in half]
     pixels = plan.camera.project(np.concatenate(fallen))
-    return _window(plan, pixels, SHADOW_MARGIN)
+    return window_around(plan, pixels, SHADOW_MARGIN)
 
 
 def _fallen(cell: WorkCell, lamp: np.ndarray, things: np.ndarray) -> np.ndarray:
@@ -161,7 +175,7 @@ def _fallen(cell: WorkCell, lamp: np.ndarray, things: np.ndarray) -> np.ndarray:
     return np.where(hit[:, None], on[0], on[1])
 
 
-def _window(plan: RigPlan, pixels: np.ndarray, margin: int) -> Window | None:
+def window_around(plan: RigPlan, pixels: np.ndarray, margin: int) -> Window | None:
     """The whole pixels around (N, 2), within the picture; None when nothing is left."""
     size = np.array([plan.camera.intrinsics.width, plan.camera.intrinsics.height])
     seen = pixels[np.isfinite(pixels).all(axis=1)]

@@ -2,6 +2,7 @@
 """Random calibration rigs to be rendered: a family and a seed in, all that is true of one out.
 
 - `plain`: 5-8 positions, balls of four clear colours, a perfect or a usual lens
+- `paper`: 80 positions, as in the paper's figure 2b, a clear ball and a perfect lens
 - `varied`: 4-8 positions, also balls of the background's colour, strong and fisheye lenses, light
   from all sides, up to 40 % of the outline hidden by the gripper
 """
@@ -20,7 +21,7 @@ from monocell.core.rotation import rotation_from_vector
 from monocell.scene.gripper import Block, grip_frame, gripper_blocks
 from monocell.scene.work_cell import Lab
 
-FAMILIES = ("plain", "varied")
+FAMILIES = ("plain", "varied", "paper")
 RADIUS, REACH = 0.04, 0.19
 WORK_LOW, WORK_HIGH = np.array([-0.2, -0.5, 0.06]), np.array([0.75, 0.5, 0.75])
 APART, RIM = 0.16, 70
@@ -64,9 +65,15 @@ def random_plan(family: str, seed: int) -> RigPlan:
     varied = family == "varied"
     lab = _lab(rng, varied)
     camera = _camera(rng, varied)
+    if family == "paper":
+        lens = camera.intrinsics.undistorted()
+        camera = replace(camera, intrinsics=lens)
     lab = replace(lab, to_lamp=_before_the_walls(lab.to_lamp, camera))
     count = int(rng.integers(4, 9) if varied else rng.integers(5, 9))
-    positions = _positions(rng, camera, count)
+    if family == "paper":
+        positions = _positions(rng, camera, 80, 0.0)
+    else:
+        positions = _positions(rng, camera, count, APART)
     most = 0.4 if varied else 0.25
     held = [_held(rng, camera, place, rng.uniform(0, most)) for place in positions]
     ball, color, roughness = _ball(rng, lab, varied)
@@ -142,8 +149,8 @@ def _camera(rng: np.random.Generator, varied: bool) -> Camera:
     return Camera(intrinsics, roll @ level)
 
 
-def _positions(rng: np.random.Generator, camera: Camera, count: int) -> np.ndarray:
-    """Places all over the work space that the camera sees, none close to another."""
+def _positions(rng: np.random.Generator, camera: Camera, count: int, apart: float) -> np.ndarray:
+    """Places all over the work space that the camera sees, none nearer than that to another."""
     places: list[np.ndarray] = []
     while len(places) < count:
         place = rng.uniform(WORK_LOW, WORK_HIGH)
@@ -152,7 +159,7 @@ def _positions(rng: np.random.Generator, camera: Camera, count: int) -> np.ndarr
         size = [camera.intrinsics.width, camera.intrinsics.height]
         if not ((low > 0).all() and (high < size).all()):
             continue
-        if all(np.linalg.norm(place - other) > APART for other in places):
+        if all(np.linalg.norm(place - other) > apart for other in places):
             places.append(place)
     return np.array(places)
 
