@@ -13,7 +13,7 @@ from ..intrinsics import Intrinsics
 from ..picture.pictures import Picture, check_size, linear_light
 from .circle_votes import Circle, vote_for_circles
 from .outline import OutlineMeter, SphereOutline
-from .ring_search import NARROW, WIDE, Pyramid, RoughSphere, Span, circle_of, search_ring
+from .ring_search import NARROW, WIDE, Pyramid, RoughSphere, Span, circle_of, search_rings
 
 Window = tuple[float, float, float, float]
 
@@ -108,13 +108,13 @@ def _first_clear(
     """The first circle that turns out to be a clear ball at once, as in a good window it does."""
     for circle in circles:
         try:
-            rough = search_ring(pyramid, intrinsics, circle, radius, WIDE)
-            if circle.radius > FINE_ENOUGH:
-                better = circle_of(intrinsics, rough.centre_camera, radius)
-                rough = search_ring(pyramid, intrinsics, better, radius, NARROW)
-            if rough.agreement < CLEAR_AGREEMENT:
+            roughs = search_rings(pyramid, intrinsics, [circle], radius, WIDE)
+            if roughs and circle.radius > FINE_ENOUGH:
+                better = circle_of(intrinsics, roughs[0].centre_camera, radius)
+                roughs = search_rings(pyramid, intrinsics, [better], radius, NARROW)
+            if not roughs or roughs[0].agreement < CLEAR_AGREEMENT:
                 continue
-            outline = measure_sphere(picture, intrinsics, radius, rough.centre_camera)
+            outline = measure_sphere(picture, intrinsics, radius, roughs[0].centre_camera)
         except SphereNotFound:
             continue
         if _is_clear(outline):
@@ -138,14 +138,12 @@ def _roughs(
 def _searched(
     pyramid: Pyramid, intrinsics: Intrinsics, circles: list[Circle], radius: float, span: Span
 ) -> list[RoughSphere]:
-    found: list[tuple[float, RoughSphere]] = []
-    for circle in circles:
-        try:
-            rough = search_ring(pyramid, intrinsics, circle, radius, span)
-        except SphereNotFound:
-            continue
-        if rough.agreement >= LEAST_AGREEMENT:
-            found.append((_evidence(rough.agreement, circle.radius * rough.visible), rough))
+    roughs = search_rings(pyramid, intrinsics, circles, radius, span)
+    found = [
+        (_evidence(rough.agreement, rough.circle.radius * rough.visible), rough)
+        for rough in roughs
+        if rough.agreement >= LEAST_AGREEMENT
+    ]
     distinct: list[RoughSphere] = []
     for _, rough in sorted(found, key=lambda pair: -pair[0]):
         if not any(_same(rough.centre_camera, kept.centre_camera, radius) for kept in distinct):
