@@ -179,12 +179,12 @@ def _changes(
     if change.ndim == 3:
         channels = cv2.split(change)
         change = cv2.max(channels[0], cv2.max(channels[1], channels[2]))
-    change = change.reshape(*on_level.shape[:2], -1).astype(np.float32)
+    changes = change.reshape(*on_level.shape[:2], -1).astype(np.float32)
     height, width = picture.shape[:2]
     seen = (x >= -0.5) & (x <= width - 0.5) & (y >= -0.5) & (y <= height - 0.5)
     seen = seen.reshape(on_level.shape[:3])
-    change *= seen[:, :, 1:-1]
-    return change, seen
+    changes *= seen[:, :, 1:-1]
+    return changes, seen
 
 
 def _strongest(change: NDArray[np.float32]) -> tuple[NDArray[np.intp], NDArray[np.float32]]:
