@@ -2,7 +2,7 @@
 """Where round things of any size may stand in a picture: pixels in, rough circles out, best first.
 
 Every edge pixel votes along its gradient, both ways, for the centres of circles that it may lie
-on (Ballard 1981, with the radius as third dimension). A pyramid keeps the radii between 9 and 18
+on (Ballard 1981, with the radius as third dimension). A pyramid keeps the radii between 6 and 18
 pixels of its level, so that a ball of 8 pixels and one of 400 cost the same few passes.
 """
 
@@ -15,11 +15,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
-
-LEVEL_RADII = 9.0 * 2 ** (np.arange(8) / 7)
-# balls smaller than that are looked for in the full picture too
-SMALL_RADII = np.array([6.0, 6.9, 7.9])
+# a step of two pixels keeps all of a circle's votes within two bins
+LEVEL_RADII = np.arange(6.0, 19.0, 2.0)
 # gradients below this many times the median one are texture or noise
 EDGE_OVER_MEDIAN = 3.0
 WEAKEST_EDGE, STRONGEST_THRESHOLD = 16.0, 48.0
@@ -27,7 +24,7 @@ WEAKEST_EDGE, STRONGEST_THRESHOLD = 16.0, 48.0
 LARGEST_EDGE_SHARE = 0.04
 # votes are gathered in bins of two pixels, over two bins by two
 BIN, GATHERED = 2.0, 4.0
-CANDIDATES_PER_LEVEL = 6
+CANDIDATES_PER_LEVEL, MOST_PER_LEVEL = 6, 200
 # cells and votes that stay in the processor's cache
 MOST_AT_ONCE = 1 << 18
 # pixels that tell how strong edges are
@@ -47,9 +44,15 @@ class Circle:
 
 
 def vote_for_circles(
-    picture: Grey, smallest: float = 6.0, largest: float | None = None
+    picture: Grey,
+    smallest: float = 6.0,
+    largest: float | None = None,
+    per_level: int = CANDIDATES_PER_LEVEL,
 ) -> list[Circle]:
-    """Rough circles in an 8-bit picture (H, W, 3), radii in pixels from `smallest` to `largest`."""
+    """Rough circles in an 8-bit picture (H, W, 3), radii in pixels from `smallest` to `largest`.
+
+    Of each level of the pyramid the best `per_level` are kept, whatever others hold.
+    """
     biggest = largest or 0.6 * max(picture.shape[:2])
     found: list[Circle] = []
     scale, level = 1.0, np.asarray(picture)
@@ -57,7 +60,6 @@ def vote_for_circles(
     bright = cv2.cvtColor(level, cv2.COLOR_BGR2GRAY) if level.ndim == 3 else level
     while LEVEL_RADII[0] * scale <= biggest and min(level.shape[:2]) >= 16:
         if LEVEL_RADII[-1] * scale >= smallest:
-            radii = np.concatenate([SMALL_RADII, LEVEL_RADII]) if scale == 1 else LEVEL_RADII
             found += [
                 # a level's pixel (0, 0) covers the middle of the block it was averaged from
                 Circle(
@@ -66,7 +68,7 @@ def vote_for_circles(
                     c.radius * scale,
                     c.support,
                 )
-                for c in _on_one_level(bright if scale == 1 else level, radii)
+                for c in _on_one_level(bright if scale == 1 else level, per_level)
             ]
         half = (level.shape[1] // 2, level.shape[0] // 2)
         level = cv2.resize(level[: half[1] * 2, : half[0] * 2], half, interpolation=cv2.INTER_AREA)
@@ -74,8 +76,9 @@ def vote_for_circles(
     return _distinct(sorted(found, key=lambda c: -c.support * np.sqrt(c.radius)))
 
 
-def _on_one_level(picture: Grey, radii: Array) -> list[Circle]:
-    u, v, nu, nv = _edge_pixels(picture)
+def _on_one_level(picture: Grey, count: int) -> list[Circle]:
+    radii = LEVEL_RADII
+    u, v, nu, nv = edge_pixels(picture)
     if len(u) < 8:
         return []
     margin = int(radii[-1] / BIN) + 2
@@ -96,10 +99,10 @@ def _on_one_level(picture: Grey, radii: Array) -> list[Circle]:
     for layer, radius in zip(layers, radii, strict=True):
         cv2.boxFilter(layer, -1, (2, 2), dst=layer, anchor=(0, 0), normalize=False)
         cv2.max(best, cv2.multiply(layer, 1 / (2 * np.pi * radius), dtype=cv2.CV_32F), dst=best)
-    return _peaks(best, layers, radii, margin)
+    return _peaks(best, layers, margin)[:count]
 
 
-def _edge_pixels(picture: Grey) -> tuple[NDArray[np.float32], ...]:
+def edge_pixels(picture: Grey) -> tuple[NDArray[np.float32], ...]:
     """Thin edges: u, v and the unit gradient, of the channel that changes most."""
     smooth = cv2.GaussianBlur(picture, (5, 5), 0.9)
     du = cv2.Sobel(smooth, cv2.CV_16S, 1, 0, ksize=3)
@@ -140,14 +143,12 @@ def _strongest_channel(du: NDArray[Any], dv: NDArray[Any]) -> tuple[NDArray[Any]
     return np.asarray(best_u), np.asarray(best_v)
 
 
-def _peaks(
-    best: NDArray[np.float32], layers: NDArray[np.uint8], radii: Array, margin: int
-) -> list[Circle]:
+def _peaks(best: NDArray[np.float32], layers: NDArray[np.uint8], margin: int) -> list[Circle]:
     local = (best == cv2.dilate(best, np.ones((5, 5), np.uint8))) & (best > 0.25)
     v, u = np.divmod(np.flatnonzero(local), best.shape[1])
-    radius = radii[np.argmax(layers[:, v, u] / radii[:, None], axis=0)]
+    radius = LEVEL_RADII[np.argmax(layers[:, v, u] / LEVEL_RADII[:, None], axis=0)]
     # the longer the outline, the less its support is by chance
-    order = np.argsort(-best[v, u] * np.sqrt(radius))[:CANDIDATES_PER_LEVEL]
+    order = np.argsort(-best[v, u] * np.sqrt(radius))[:MOST_PER_LEVEL]
     middle = GATHERED / 2 - 0.5
     return [
         Circle(
