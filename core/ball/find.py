@@ -30,7 +30,9 @@ LEAST_AGREEMENT = 0.33
 # an outline of which more is seen can't be a part of something else's
 WHOLE_COVERAGE = 0.8
 # a whole picture holds so many circles that some stand out by chance, or are a part of an ellipse
-FAINT_REFUSED, FAINT_DOUBTED, HALF_SEEN = 6.0, 9.0, 0.6
+FAINT_REFUSED, FAINT_DOUBTED, HALF_SEEN = 6.5, 9.0, 0.6
+# edges of a texture make loose circles, by their radius, or circles that most edges are not on
+LOOSE_SHARE, FEW_USED = 0.05, 0.45
 # around the rough outline, as a share of its radius and in pixels, what the fine measurement sees
 CROP_SHARE, CROP_PIXELS = 1.25, 14.0
 
@@ -187,12 +189,16 @@ class _Search:
         """Doubts that a whole picture raises. Raises SphereNotFound for an outline too faint."""
         if self._window is not None:
             return ()
-        if outline.evidence < FAINT_REFUSED:
+        faint = outline.evidence < FAINT_DOUBTED
+        loose = outline.rms_pixels > LOOSE_SHARE * size_pixels(self._intrinsics, outline)
+        loose |= float(outline.used.mean()) < FEW_USED
+        if outline.evidence < FAINT_REFUSED or (faint and loose):
             raise SphereNotFound(
-                f"the best outline stands out by {outline.evidence:.1f} sigmas only, which some of "
-                "the many circles of a whole picture do; give a window around the ball"
+                f"the best outline stands out by {outline.evidence:.1f} sigmas only "
+                f"({outline.rms_pixels:.1f} px rms), as some of the many circles of a whole "
+                "picture do by chance; give a window around the ball"
             )
-        if outline.evidence < FAINT_DOUBTED or outline.coverage < HALF_SEEN:
+        if faint or outline.coverage < HALF_SEEN:
             return (
                 f"found in the whole picture with {100 * outline.coverage:.0f} % of its outline "
                 f"and {outline.evidence:.1f} sigmas: a window around it would make sure",
