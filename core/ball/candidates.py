@@ -52,6 +52,8 @@ class Places:
             self._changed = changed_mask(coded, hints.background)
         self._circles: list[Circle] | None = None
         self.clear_weight = CLEAR_WEIGHT if hints.weigh else 0.0
+        rough = hints.rough_radius_pixels
+        self.of_size = "" if rough is None else f" of about {rough:.0f} px radius"
 
     def searched(self, most: int) -> int:
         """How many circles are worth a search when `most` balls are wanted."""

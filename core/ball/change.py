@@ -20,7 +20,7 @@ from .circle_votes import Circle
 from .color import inside_of
 
 # changes are looked for in blocks of so many pixels, from so many sigmas and grey levels on
-BLOCK, SIGMAS, LEAST_LEVELS = 2, 6.0, 8.0
+BLOCK, SIGMAS, LEAST_LEVELS, MOST_LEVELS = 2, 6.0, 8.0, 30.0
 # more of a picture changes only when the camera moves, or the light in one part of the cell
 LARGEST_SHARE = 0.7
 MOST_PICTURES = 9
@@ -59,9 +59,9 @@ def changed_mask(picture: Picture, background: Picture) -> Mask:
         )
     now, before = _blocks(eight_bits(picture)), _blocks(eight_bits(background))
     difference = np.abs(now - _relit(before, now)).max(axis=2)
-    # half of the picture at least stays as it was: its differences are noise
-    noise = 1.4826 * float(np.median(difference[::3, ::3])) / 1.5
-    limit = max(LEAST_LEVELS, SIGMAS * noise)
+    # half of the picture stays as it was: the differences there are noise, unless the camera moved
+    noise = float(np.median(difference[::3, ::3]))
+    limit = float(np.clip(SIGMAS * noise, LEAST_LEVELS, MOST_LEVELS))
     changed: Mask = difference > limit
     share = float(changed.mean())
     if share > LARGEST_SHARE:

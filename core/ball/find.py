@@ -226,12 +226,13 @@ class _Search:
         return bool(angle < 0.3 * self._radius / nearer)
 
     def _none(self, refusal: SphereNotFound | None) -> SphereNotFound:
-        where = "in the picture"
+        where, advice = "in the picture", "give a window around it, or a picture that shows"
         if self._window is not None:
             where = f"in the window {[round(float(v)) for v in self._window]}"
+            advice = "give a window that holds it whole, or a picture that shows"
         if refusal is not None:
             return type(refusal)(f"no ball found {where}: {refusal}")
         return SphereNotFound(
-            f"no ball found {where}: no outline of one stands out; give a window around it, or a "
-            "picture that shows all of it with more contrast"
+            f"no ball found {where}: no outline of one{self._places.of_size} stands out; {advice} "
+            "all of it with more contrast"
         )

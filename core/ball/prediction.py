@@ -38,13 +38,16 @@ class Prediction:
     window: Window
     radius_pixels: float | None
 
-    def doubts(self, centre_camera: Array) -> tuple[str, ...]:
-        """What to tell of a ball found farther from here than was said."""
-        distance = float(np.linalg.norm(self.centre_camera))
-        axis = self.centre_camera / distance
+    def aside(self, centre_camera: Array) -> float:
+        """How far a centre (3,) lies from here across the line of sight, metres."""
+        axis = self.centre_camera / np.linalg.norm(self.centre_camera)
         off = centre_camera - self.centre_camera
-        aside = float(np.linalg.norm(off - (off @ axis) * axis))
-        if aside <= 1.2 * self.reach:
+        return float(np.linalg.norm(off - (off @ axis) * axis))
+
+    def doubts(self, centre_camera: Array) -> tuple[str, ...]:
+        """What to tell of a ball (3,) found farther from here than was said."""
+        aside = self.aside(centre_camera)
+        if aside <= self.reach:
             return ()
         return (
             f"the ball is {1e3 * aside:.0f} mm aside of where the pose puts it, "
@@ -65,8 +68,8 @@ def predicted(camera: Camera, centre_world: ArrayLike, radius: float, within: fl
     centre = camera.pose.apply(frozen(centre_world, (3,), "centre_world"))
     if centre[2] <= radius:
         raise SphereNotFound(
-            f"by the pose the ball lies {centre[2]:.2f} m before the camera, not in front of it; "
-            "is the pose camera_from_world, and is the position in metres?"
+            f"by the pose the ball's centre has z = {centre[2]:.2f} m in the camera's frame, not "
+            "before the camera; is the pose camera_from_world, and is the position in metres?"
         )
     reach = within + SIGMAS * _sigma(camera, centre)
     outline = outline_pixels(camera.intrinsics, centre, radius, 72)
