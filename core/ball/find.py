@@ -12,6 +12,7 @@ from ..errors import SphereCut, SphereNotFound
 from ..intrinsics import Intrinsics
 from ..picture.pictures import Picture, check_size, eight_bits, linear_light
 from .candidates import Places, Window, clipped, evidence_of, size_pixels
+from .circle_votes import Circle
 from .hints import FindHints
 from .outline import OutlineMeter, SphereOutline
 from .ring_edges import NARROW, WIDE, Pyramid
@@ -33,6 +34,8 @@ WHOLE_COVERAGE = 0.8
 FAINT_REFUSED, FAINT_DOUBTED, HALF_SEEN = 6.5, 9.0, 0.6
 # edges of a texture make loose circles, by their radius, or circles that most edges are not on
 LOOSE_SHARE, FEW_USED = 0.05, 0.45
+# no camera of a work cell is that many metres from its ball
+FARTHEST = 100.0
 # around the rough outline, as a share of its radius and in pixels, what the fine measurement sees
 CROP_SHARE, CROP_PIXELS = 1.25, 14.0
 
@@ -111,7 +114,8 @@ class _Search:
         self._picture, self._intrinsics, self._window = picture, intrinsics, window
         coded = eight_bits(picture)
         self._pyramid = Pyramid(coded)
-        self._places = Places(coded, intrinsics, window, hints or FindHints())
+        self._hints = hints or FindHints()
+        self._places = Places(coded, intrinsics, window, self._hints)
 
     def first_clear(self) -> SphereOutline | None:
         """The first circle that turns out to be a clear ball at once, as in a good window."""
@@ -177,12 +181,12 @@ class _Search:
         """The measured outline with what speaks against it. Raises SphereNotFound."""
         outline = measure_sphere(self._picture, self._intrinsics, self._radius, rough.centre_camera)
         self._places.refuse_size(size_pixels(self._intrinsics, outline))
-        circle = circle_of(self._intrinsics, outline.centre_camera, self._radius)
+        doubts = (*self._faint(outline), *_far(outline))
         if outline.coverage < WHOLE_COVERAGE:
-            refuse_ellipse(
-                self._pyramid, self._intrinsics, circle, outline.centre_camera, self._radius
-            )
-        doubts = (*self._faint(outline), *self._places.doubts(circle))
+            circle, centre = self._circle(outline), outline.centre_camera
+            refuse_ellipse(self._pyramid, self._intrinsics, circle, centre, self._radius)
+        if self._hints.weigh:
+            doubts = (*doubts, *self._places.doubts(self._circle(outline)))
         return replace(outline, warnings=(*outline.warnings, *doubts)) if doubts else outline
 
     def _faint(self, outline: SphereOutline) -> tuple[str, ...]:
@@ -216,8 +220,10 @@ class _Search:
         return outline.evidence * self._weight(outline)
 
     def _weight(self, outline: SphereOutline) -> float:
-        circle = circle_of(self._intrinsics, outline.centre_camera, self._radius)
-        return self._places.weight(circle)
+        return self._places.weight(self._circle(outline)) if self._hints.weigh else 1.0
+
+    def _circle(self, outline: SphereOutline) -> Circle:
+        return circle_of(self._intrinsics, outline.centre_camera, self._radius)
 
     def _same(self, one: Array, other: Array) -> bool:
         """Whether two centres show at about the same place in the picture, at whatever depth."""
@@ -236,3 +242,13 @@ class _Search:
             f"no ball found {where}: no outline of one{self._places.of_size} stands out; {advice} "
             "all of it with more contrast"
         )
+
+
+def _far(outline: SphereOutline) -> tuple[str, ...]:
+    distance = float(np.linalg.norm(outline.centre_camera))
+    if distance < FARTHEST:
+        return ()
+    return (
+        f"a ball of radius {outline.radius:g} m would be {distance:.0f} m away: is the radius in "
+        "metres?",
+    )
