@@ -101,9 +101,8 @@ def _best_consensus(edges: RingEdges, tolerance: Array) -> Array:
     # far from the circle's own size it is another thing
     size = _tangents(w) / edges.tangents[:, None]
     w[~((size > 0.7) & (size < 1.4))] = np.nan
-    # every second profile is enough to choose by
-    rays, weights = edges.rays[:, ::2], edges.weights[:, None, ::2].astype(np.float32)
-    votes = _votes(_outside(w, rays), weights, tolerance[:, None].astype(np.float32))
+    weights = edges.weights[:, None].astype(np.float32)
+    votes = _votes(_outside(w, edges.rays), weights, tolerance[:, None].astype(np.float32))
     winner = np.argmax(votes, axis=1)
     return w[np.arange(len(w)), winner]
 
