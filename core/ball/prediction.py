@@ -12,10 +12,9 @@ from ..arrays import Array, finite, frozen, positive
 from ..camera import Camera
 from ..errors import InvalidValue, SphereNotFound
 from ..pose import point_jacobian
+from .candidates import Window
 from .hints import SMALLEST_PIXELS
 from .sphere import outline_pixels
-
-Window = tuple[float, float, float, float]
 
 SIGMAS = 3.0
 # what a window leaves around the outline, as a share of its radius and in pixels

@@ -72,7 +72,10 @@ def _run_picture(args: argparse.Namespace) -> int:
 
 def _run_cell(args: argparse.Namespace) -> int:
     found = find_in_cell(args)
-    print_json(cell_document(found)) if args.json else print(cell_told(found))
+    if args.json:
+        print_json(cell_document(found))
+    else:
+        print(cell_told(found))
     for seen in found:
         warn([f"{seen.sighting.picture}: {told}" for told in seen.warnings])
     return DONE if all(seen.ball is not None for seen in found) else NOT_TRUSTED
