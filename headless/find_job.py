@@ -45,7 +45,9 @@ class Job:
         """The job that the arguments state, with the checks a document's sighting gets."""
         cell = None if args.near_pose is None else read_cell(args.near_pose)
         if args.radius is None:
-            raise InvalidValue("--radius is missing: the ball's radius in metres")
+            raise InvalidValue(
+                "--radius is missing: the ball's radius in metres; see monocell find --help"
+            )
         # the radius and the window are refused with their numbers
         asked = SphereSighting(str(args.picture), np.zeros(3), args.radius, args.window)
         camera = _camera(args, cell)
@@ -173,7 +175,9 @@ def _camera(args: argparse.Namespace, cell: Cell | None) -> Camera:
     if args.camera is not None:
         return read_camera(args.camera)
     if cell is None:
-        raise InvalidValue("--camera is missing: a camera file or a cell document")
+        raise InvalidValue(
+            "--camera is missing: a camera file or a cell document; see monocell find --help"
+        )
     return cell.camera
 
 
