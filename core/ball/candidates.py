@@ -20,7 +20,7 @@ from .ring_search import RoughSphere
 
 Window = tuple[float, float, float, float]
 
-SEARCHED, SEARCHED_IN_WINDOW = 24, 8
+SEARCHED, SEARCHED_IN_WINDOW = 48, 8
 # with hints that weigh, more circles are worth a look
 MORE = 4
 # a hint that does not fit at all leaves this much of a candidate's weight

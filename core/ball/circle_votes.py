@@ -15,6 +15,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
+
 # a step of two pixels keeps all of a circle's votes within two bins
 LEVEL_RADII = np.arange(6.0, 19.0, 2.0)
 # gradients below this many times the median one are texture or noise
@@ -24,7 +26,9 @@ WEAKEST_EDGE, STRONGEST_THRESHOLD = 16.0, 48.0
 LARGEST_EDGE_SHARE = 0.04
 # votes are gathered in bins of two pixels, over two bins by two
 BIN, GATHERED = 2.0, 4.0
-CANDIDATES_PER_LEVEL, MOST_PER_LEVEL = 6, 200
+CANDIDATES_PER_LEVEL, MOST_PER_LEVEL = 10, 200
+# radii whose votes are within this share of the most are a peak's
+RADII_ALIKE = 0.6
 # cells and votes that stay in the processor's cache
 MOST_AT_ONCE = 1 << 18
 # pixels that tell how strong edges are
@@ -146,7 +150,7 @@ def _strongest_channel(du: NDArray[Any], dv: NDArray[Any]) -> tuple[NDArray[Any]
 def _peaks(best: NDArray[np.float32], layers: NDArray[np.uint8], margin: int) -> list[Circle]:
     local = (best == cv2.dilate(best, np.ones((5, 5), np.uint8))) & (best > 0.25)
     v, u = np.divmod(np.flatnonzero(local), best.shape[1])
-    radius = LEVEL_RADII[np.argmax(layers[:, v, u] / LEVEL_RADII[:, None], axis=0)]
+    radius = _radii_between(layers[:, v, u])
     # the longer the outline, the less its support is by chance
     order = np.argsort(-best[v, u] * np.sqrt(radius))[:MOST_PER_LEVEL]
     middle = GATHERED / 2 - 0.5
@@ -159,6 +163,17 @@ def _peaks(best: NDArray[np.float32], layers: NDArray[np.uint8], margin: int) ->
         )
         for i in order
     ]
+
+
+def _radii_between(votes: NDArray[np.uint8]) -> Array:
+    """The radii (P,) of peaks from their votes for each radius (R, P).
+
+    Two bins hold the votes of several radii alike: the middle of these is taken.
+    """
+    share = votes / np.maximum(votes.max(axis=0), 1)
+    weights = np.square(np.maximum(share - RADII_ALIKE, 0))
+    radii: Array = LEVEL_RADII @ weights / weights.sum(axis=0)
+    return radii
 
 
 def _distinct(circles: list[Circle]) -> list[Circle]:

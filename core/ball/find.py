@@ -19,19 +19,21 @@ from .ring_edges import NARROW, WIDE, Pyramid
 from .ring_search import RoughSphere, circle_of, search_rings
 from .roundness import refuse_ellipse
 
-# how many balls are measured when nobody says
-MEASURED = 4
+# how many balls are measured when nobody says, and how many more are tried when some are refused
+MEASURED, SPARE = 4, 3
 # an outline this clear ends the search: what is left had less agreement already
 CLEAR_EVIDENCE, CLEAR_COVERAGE = 8.0, 0.45
 # in a window the strongest circles are tried before all are compared
 TRIED_AT_ONCE, CLEAR_AGREEMENT = 2, 0.6
 # up to this radius the first look is as fine as the pixels
 FINE_ENOUGH = 32.0
-LEAST_AGREEMENT = 0.33
+LEAST_AGREEMENT, CLOSER_LOOKS, SMALL = 0.33, 3, 16.0
 # an outline of which more is seen can't be a part of something else's
 WHOLE_COVERAGE = 0.8
 # a whole picture holds so many circles that some stand out by chance, or are a part of an ellipse
 FAINT_REFUSED, FAINT_DOUBTED, HALF_SEEN = 6.5, 9.0, 0.6
+# a small outline can't stand out by more, but nearly all of it is seen; half of one should
+SMALL_REFUSED, MOSTLY_SEEN, HALF_REFUSED = 5.5, 0.7, 7.9
 # edges of a texture make loose circles, by their radius, or circles that most edges are not on
 LOOSE_SHARE, FEW_USED = 0.05, 0.45
 # no camera of a work cell is that many metres from its ball
@@ -137,7 +139,10 @@ class _Search:
         """The rough spheres that enough edges agree on, each place once, the best first."""
         circles = self._places.circles(self._places.searched(most), most)
         wide = search_rings(self._pyramid, self._intrinsics, circles, self._radius, WIDE)
-        return self._best_of(self._closer(self._best_of(wide)[: most + 1]))[:most]
+        best = self._best_of(wide)[: most + CLOSER_LOOKS]
+        # a closer look at a small ball sees less around it, and no finer
+        small = [rough for rough in best if rough.circle.radius < SMALL]
+        return self._best_of([*self._closer(best), *small])[: most + SPARE]
 
     def measured(
         self, roughs: list[RoughSphere], most: int, until_clear: bool = False
@@ -145,17 +150,18 @@ class _Search:
         """The outlines of rough spheres, the best first. Raises what stands for all of them."""
         outlines: list[SphereOutline] = []
         refusal: SphereNotFound | None = None
-        for rough in roughs[:most]:
+        for rough in roughs:
             try:
                 outline = self._believed(rough)
             except SphereNotFound as error:
                 # that a ball is cut says more than that something else is none
-                if refusal is None or isinstance(error, SphereCut):
+                cut = isinstance(error, SphereCut) and rough.agreement > CLEAR_AGREEMENT
+                if refusal is None or cut:
                     refusal = error
                 continue
             if not any(self._same(outline.centre_camera, o.centre_camera) for o in outlines):
                 outlines.append(outline)
-            if until_clear and self._is_clear(outline):
+            if len(outlines) == most or (until_clear and self._is_clear(outline)):
                 break
         if not outlines:
             raise self._none(refusal)
@@ -196,7 +202,10 @@ class _Search:
         faint = outline.evidence < FAINT_DOUBTED
         loose = outline.rms_pixels > LOOSE_SHARE * size_pixels(self._intrinsics, outline)
         loose |= float(outline.used.mean()) < FEW_USED
-        if outline.evidence < FAINT_REFUSED or (faint and loose):
+        least = SMALL_REFUSED if outline.coverage > MOSTLY_SEEN else FAINT_REFUSED
+        if outline.coverage < HALF_SEEN:
+            least = HALF_REFUSED
+        if outline.evidence < least or (faint and loose):
             raise SphereNotFound(
                 f"the best outline stands out by {outline.evidence:.1f} sigmas only "
                 f"({outline.rms_pixels:.1f} px rms), as some of the many circles of a whole "

@@ -29,17 +29,19 @@ WAYS = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
 class Span:
     """How a ring is looked at: from where to where, in radii, on a level where it is how large.
 
-    Edges within the share `agreement` of the radius agree with an outline.
+    Edges within the share `agreement` of the radius agree with an outline; so many `trials` of
+    three edges are made.
     """
 
     nearest: float
     farthest: float
     working_radius: float
     agreement: float
+    trials: int = 120
 
 
 # first far and coarse, then near and fine
-WIDE, NARROW = Span(0.68, 1.36, 16.0, 0.03), Span(0.84, 1.18, 48.0, 0.012)
+WIDE, NARROW = Span(0.68, 1.36, 16.0, 0.03), Span(0.84, 1.18, 48.0, 0.012, 300)
 
 
 class Pyramid:

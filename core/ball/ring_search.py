@@ -32,7 +32,6 @@ from .ring_edges import (
 from .sphere import outline_pixels
 from .triples import drawn_triples, outlines_through
 
-TRIALS = 120
 AGREEMENT_PIXELS = 0.5
 FEWEST_EDGES = 6
 
@@ -70,7 +69,7 @@ def search_rings(
     share = np.maximum(span.agreement, AGREEMENT_PIXELS / sizes)
     # tangents of the angles between the axis and the outline, as a ball of that circle has them
     tolerance = share * edges.tangents
-    w = _best_consensus(edges, tolerance)
+    w = _best_consensus(edges, tolerance, span.trials)
     for _ in range(2):
         w = _refitted(w, edges, tolerance)
     votes = _votes(_outside(w[:, None], edges.rays)[:, 0], edges.weights, tolerance)
@@ -94,9 +93,9 @@ def circle_of(intrinsics: Intrinsics, centre_camera: Array, radius: float) -> Ci
     return Circle(float(middle[0]), float(middle[1]), mean_radius, 0.0)
 
 
-def _best_consensus(edges: RingEdges, tolerance: Array) -> Array:
+def _best_consensus(edges: RingEdges, tolerance: Array, trials: int) -> Array:
     """The outlines (K, 3) that most edges agree with, of many, each through three edges."""
-    triples = drawn_triples(edges.weights, TRIALS)
+    triples = drawn_triples(edges.weights, trials)
     w = outlines_through(np.take_along_axis(edges.rays[:, None], triples[..., None], axis=2))
     # far from the circle's own size it is another thing
     size = _tangents(w) / edges.tangents[:, None]
