@@ -3,82 +3,84 @@
 
 from __future__ import annotations
 
-import cv2
+from dataclasses import replace
+
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arrays import Array, positive
 from ..errors import SphereCut, SphereNotFound
 from ..intrinsics import Intrinsics
-from ..picture.pictures import Picture, check_size, linear_light
-from .circle_votes import Circle, vote_for_circles
+from ..picture.pictures import Picture, check_size, eight_bits, linear_light
+from .candidates import Places, Window, clipped, evidence_of, size_pixels
+from .circle_votes import Circle
+from .hints import FindHints
 from .outline import OutlineMeter, SphereOutline
-from .ring_search import NARROW, WIDE, Pyramid, RoughSphere, Span, circle_of, search_ring
+from .ring_edges import NARROW, WIDE, Pyramid
+from .ring_search import RoughSphere, circle_of, search_rings
+from .roundness import refuse_ellipse
 
-Window = tuple[float, float, float, float]
-
-SEARCHED, SEARCHED_IN_WINDOW, NARROWED, MEASURED = 24, 8, 5, 4
+# how many balls are measured when nobody says, and how many more are tried when some are refused
+MEASURED, SPARE = 4, 3
 # an outline this clear ends the search: what is left had less agreement already
 CLEAR_EVIDENCE, CLEAR_COVERAGE = 8.0, 0.45
 # in a window the strongest circles are tried before all are compared
 TRIED_AT_ONCE, CLEAR_AGREEMENT = 2, 0.6
 # up to this radius the first look is as fine as the pixels
 FINE_ENOUGH = 32.0
-LEAST_AGREEMENT, SHARE_BY_CHANCE = 0.33, 0.25
-INDEPENDENT_EDGES = 300
+LEAST_AGREEMENT, CLOSER_LOOKS, SMALL = 0.33, 3, 16.0
+# an outline of which more is seen can't be a part of something else's
+WHOLE_COVERAGE = 0.8
+# a whole picture holds so many circles that some stand out by chance, or are a part of an ellipse
+FAINT_REFUSED, FAINT_DOUBTED, HALF_SEEN = 6.5, 9.0, 0.6
+# a small outline can't stand out by more, but nearly all of it is seen; half of one should
+SMALL_REFUSED, MOSTLY_SEEN, HALF_REFUSED = 5.5, 0.7, 7.9
+# edges of a texture make loose circles, by their radius, or circles that most edges are not on
+LOOSE_SHARE, FEW_USED = 0.05, 0.45
+# no camera of a work cell is that many metres from its ball
+FARTHEST = 100.0
 # around the rough outline, as a share of its radius and in pixels, what the fine measurement sees
 CROP_SHARE, CROP_PIXELS = 1.25, 14.0
 
 
 def find_spheres(
-    picture: Picture, intrinsics: Intrinsics, radius: float, window: Window | None = None
-) -> tuple[SphereOutline, ...]:
-    """Balls of `radius` metres in a picture (H, W, 3) as `read_picture` gives it, the best first.
-
-    `window` (x, y, width, height) in pixels limits where the ball's middle may be. Overlapping
-    answers are told apart by how much of the outline has its edge: the best of each place is kept.
-
-    Raises PictureError when the picture is not of the camera's size, SphereNotFound when there is
-    no ball that can be believed, and SphereCut when the best leaves the picture.
-    """
-    return _found(picture, intrinsics, radius, window, until_clear=False)
-
-
-def _found(
     picture: Picture,
     intrinsics: Intrinsics,
     radius: float,
-    window: Window | None,
+    window: Window | None = None,
     *,
-    until_clear: bool,
+    hints: FindHints | None = None,
+    most: int = MEASURED,
 ) -> tuple[SphereOutline, ...]:
-    positive(radius, "radius")
-    check_size(picture, intrinsics, "the picture")
-    coded = _eight_bits(picture)
-    left, top, width, height = _clipped(window, intrinsics)
-    crop = np.ascontiguousarray(coded[top : top + height, left : left + width])
-    circles = [
-        Circle(c.u + left, c.v + top, c.radius, c.support)
-        for c in vote_for_circles(crop, largest=_largest(window, intrinsics))
-    ]
-    pyramid = Pyramid(coded)
-    if until_clear and window is not None:
-        clear = _first_clear(picture, pyramid, intrinsics, circles[:TRIED_AT_ONCE], radius)
-        if clear is not None:
-            return (clear,)
-    most = SEARCHED if window is None else SEARCHED_IN_WINDOW
-    roughs = _roughs(pyramid, intrinsics, circles[:most], radius)
-    return _measured(picture, intrinsics, radius, roughs, _where(window), until_clear)
+    """Balls of `radius` metres in a picture (H, W, 3) as `read_picture` gives it, the best first.
+
+    `window` (x, y, width, height) in pixels limits where balls are; it should hold the whole
+    outline. `hints` tell what is known of the ball, `most` how many are wanted. Overlapping answers
+    are told apart by how much of the outline has its edge: the best of each place is kept.
+
+    Raises PictureError when the picture is not of the camera's size, SphereNotFound when there is
+    no ball that can be believed, SphereCut when the best leaves the picture, and what hints raise.
+    """
+    search = _Search(picture, intrinsics, radius, window, hints)
+    return search.measured(search.roughs(most), most)
 
 
 def find_sphere(
-    picture: Picture, intrinsics: Intrinsics, radius: float, window: Window | None = None
+    picture: Picture,
+    intrinsics: Intrinsics,
+    radius: float,
+    window: Window | None = None,
+    *,
+    hints: FindHints | None = None,
 ) -> SphereOutline:
     """The ball in a picture: the best of `find_spheres`, which see for what is raised.
 
     Places are measured from the most agreed on, until one is clear.
     """
-    return _found(picture, intrinsics, radius, window, until_clear=True)[0]
+    search = _Search(picture, intrinsics, radius, window, hints)
+    clear = search.first_clear() if window is not None else None
+    if clear is not None:
+        return clear
+    return search.measured(search.roughs(MEASURED), MEASURED, until_clear=True)[0]
 
 
 def measure_sphere(
@@ -97,7 +99,7 @@ def measure_sphere(
     """
     circle = circle_of(intrinsics, rough_centre_camera, radius)
     reach = CROP_SHARE * circle.radius + CROP_PIXELS
-    left, top, width, height = _clipped(
+    left, top, width, height = clipped(
         (circle.u - reach, circle.v - reach, 2 * reach, 2 * reach), intrinsics
     )
     light = linear_light(np.ascontiguousarray(picture[top : top + height, left : left + width]))
@@ -105,139 +107,164 @@ def measure_sphere(
     return meter.measure(rough_centre_camera, predicted=predicted)
 
 
-def _first_clear(
-    picture: Picture,
-    pyramid: Pyramid,
-    intrinsics: Intrinsics,
-    circles: list[Circle],
-    radius: float,
-) -> SphereOutline | None:
-    """The first circle that turns out to be a clear ball at once, as in a good window it does."""
-    for circle in circles:
-        try:
-            rough = search_ring(pyramid, intrinsics, circle, radius, WIDE)
+class _Search:
+    """One search of one picture: rough circles first, then ever fewer and finer."""
+
+    def __init__(
+        self,
+        picture: Picture,
+        intrinsics: Intrinsics,
+        radius: float,
+        window: Window | None,
+        hints: FindHints | None,
+    ) -> None:
+        self._radius = positive(radius, "radius")
+        check_size(picture, intrinsics, "the picture")
+        self._picture, self._intrinsics, self._window = picture, intrinsics, window
+        coded = eight_bits(picture)
+        self._pyramid = Pyramid(coded)
+        self._hints = hints or FindHints()
+        self._places = Places(coded, intrinsics, window, self._hints)
+
+    def first_clear(self) -> SphereOutline | None:
+        """The first circle that turns out to be a clear ball at once, as in a good window."""
+        for circle in self._places.circles(TRIED_AT_ONCE, MEASURED):
+            roughs = search_rings(self._pyramid, self._intrinsics, [circle], self._radius, WIDE)
             if circle.radius > FINE_ENOUGH:
-                better = circle_of(intrinsics, rough.centre_camera, radius)
-                rough = search_ring(pyramid, intrinsics, better, radius, NARROW)
-            if rough.agreement < CLEAR_AGREEMENT:
+                roughs = self._closer(roughs)
+            if not roughs or roughs[0].agreement < CLEAR_AGREEMENT:
                 continue
-            outline = measure_sphere(picture, intrinsics, radius, rough.centre_camera)
-        except SphereNotFound:
-            continue
-        if _is_clear(outline):
-            return outline
-    return None
+            try:
+                outline = self._believed(roughs[0])
+            except SphereNotFound:
+                continue
+            if self._is_clear(outline):
+                return outline
+        return None
 
+    def roughs(self, most: int) -> list[RoughSphere]:
+        """The rough spheres that enough edges agree on, each place once, the best first."""
+        circles = self._places.circles(self._places.searched(most), most)
+        wide = search_rings(self._pyramid, self._intrinsics, circles, self._radius, WIDE)
+        best = self._best_of(wide)[: most + CLOSER_LOOKS]
+        # a closer look at a small ball sees less around it, and no finer
+        small = [rough for rough in best if rough.circle.radius < SMALL]
+        return self._best_of([*self._closer(best), *small])[: most + SPARE]
 
-def _is_clear(outline: SphereOutline) -> bool:
-    return outline.evidence > CLEAR_EVIDENCE and outline.coverage > CLEAR_COVERAGE
+    def measured(
+        self, roughs: list[RoughSphere], most: int, until_clear: bool = False
+    ) -> tuple[SphereOutline, ...]:
+        """The outlines of rough spheres, the best first. Raises what stands for all of them."""
+        outlines: list[SphereOutline] = []
+        refusal: SphereNotFound | None = None
+        for rough in roughs:
+            try:
+                outline = self._believed(rough)
+            except SphereNotFound as error:
+                # that a ball is cut says more than that something else is none
+                cut = isinstance(error, SphereCut) and rough.agreement > CLEAR_AGREEMENT
+                if refusal is None or cut:
+                    refusal = error
+                continue
+            if not any(self._same(outline.centre_camera, o.centre_camera) for o in outlines):
+                outlines.append(outline)
+            if len(outlines) == most or (until_clear and self._is_clear(outline)):
+                break
+        if not outlines:
+            raise self._none(refusal)
+        return tuple(sorted(outlines, key=self._rank, reverse=True))
 
+    def _closer(self, roughs: list[RoughSphere]) -> list[RoughSphere]:
+        circles = [circle_of(self._intrinsics, r.centre_camera, self._radius) for r in roughs]
+        return search_rings(self._pyramid, self._intrinsics, circles, self._radius, NARROW)
 
-def _roughs(
-    pyramid: Pyramid, intrinsics: Intrinsics, circles: list[Circle], radius: float
-) -> list[RoughSphere]:
-    """The rough spheres that enough edges agree on, each place once, the best first."""
-    wide = _searched(pyramid, intrinsics, circles, radius, WIDE)
-    circles = [circle_of(intrinsics, rough.centre_camera, radius) for rough in wide[:NARROWED]]
-    return _searched(pyramid, intrinsics, circles, radius, NARROW)[:MEASURED]
+    def _best_of(self, roughs: list[RoughSphere]) -> list[RoughSphere]:
+        found = [
+            (self._places.weight(rough.circle) * evidence_of(rough), rough)
+            for rough in roughs
+            if rough.agreement >= LEAST_AGREEMENT
+        ]
+        distinct: list[RoughSphere] = []
+        for _, rough in sorted(found, key=lambda pair: -pair[0]):
+            if not any(self._same(rough.centre_camera, kept.centre_camera) for kept in distinct):
+                distinct.append(rough)
+        return distinct
 
+    def _believed(self, rough: RoughSphere) -> SphereOutline:
+        """The measured outline with what speaks against it. Raises SphereNotFound."""
+        outline = measure_sphere(self._picture, self._intrinsics, self._radius, rough.centre_camera)
+        self._places.refuse_size(size_pixels(self._intrinsics, outline))
+        doubts = (*self._faint(outline), *_far(outline))
+        if outline.coverage < WHOLE_COVERAGE:
+            circle, centre = self._circle(outline), outline.centre_camera
+            refuse_ellipse(self._pyramid, self._intrinsics, circle, centre, self._radius)
+        if self._hints.weigh:
+            doubts = (*doubts, *self._places.doubts(self._circle(outline)))
+        return replace(outline, warnings=(*outline.warnings, *doubts)) if doubts else outline
 
-def _searched(
-    pyramid: Pyramid, intrinsics: Intrinsics, circles: list[Circle], radius: float, span: Span
-) -> list[RoughSphere]:
-    found: list[tuple[float, RoughSphere]] = []
-    for circle in circles:
-        try:
-            rough = search_ring(pyramid, intrinsics, circle, radius, span)
-        except SphereNotFound:
-            continue
-        if rough.agreement >= LEAST_AGREEMENT:
-            found.append((_evidence(rough.agreement, circle.radius * rough.visible), rough))
-    distinct: list[RoughSphere] = []
-    for _, rough in sorted(found, key=lambda pair: -pair[0]):
-        if not any(_same(rough.centre_camera, kept.centre_camera, radius) for kept in distinct):
-            distinct.append(rough)
-    return distinct
+    def _faint(self, outline: SphereOutline) -> tuple[str, ...]:
+        """Doubts that a whole picture raises. Raises SphereNotFound for an outline too faint."""
+        if self._window is not None:
+            return ()
+        faint = outline.evidence < FAINT_DOUBTED
+        loose = outline.rms_pixels > LOOSE_SHARE * size_pixels(self._intrinsics, outline)
+        loose |= float(outline.used.mean()) < FEW_USED
+        least = SMALL_REFUSED if outline.coverage > MOSTLY_SEEN else FAINT_REFUSED
+        if outline.coverage < HALF_SEEN:
+            least = HALF_REFUSED
+        if outline.evidence < least or (faint and loose):
+            raise SphereNotFound(
+                f"the best outline stands out by {outline.evidence:.1f} sigmas only "
+                f"({outline.rms_pixels:.1f} px rms), as some of the many circles of a whole "
+                "picture do by chance; give a window around the ball"
+            )
+        if faint or outline.coverage < HALF_SEEN:
+            return (
+                f"found in the whole picture with {100 * outline.coverage:.0f} % of its outline "
+                f"and {outline.evidence:.1f} sigmas: a window around it would make sure",
+            )
+        return ()
 
-
-def _measured(
-    picture: Picture,
-    intrinsics: Intrinsics,
-    radius: float,
-    roughs: list[RoughSphere],
-    where: str,
-    until_clear: bool,
-) -> tuple[SphereOutline, ...]:
-
-    outlines: list[SphereOutline] = []
-    refusal: SphereNotFound | None = None
-    for rough in roughs:
-        try:
-            outline = measure_sphere(picture, intrinsics, radius, rough.centre_camera)
-        except SphereNotFound as error:
-            # that a ball is cut says more than that something else is none
-            if refusal is None or isinstance(error, SphereCut):
-                refusal = error
-            continue
-        if not any(_same(outline.centre_camera, o.centre_camera, radius) for o in outlines):
-            outlines.append(outline)
-        if until_clear and _is_clear(outline):
-            break
-    if outlines:
-        return tuple(sorted(outlines, key=lambda o: o.evidence, reverse=True))
-    if refusal is not None:
-        raise type(refusal)(f"no ball found {where}: {refusal}")
-    raise SphereNotFound(
-        f"no ball found {where}: no outline of one stands out; give a window around it, or a "
-        "picture that shows all of it with more contrast"
-    )
-
-
-def _evidence(share: float, radius_pixels: float) -> float:
-    """How much speaks for an outline of which `share` is seen, in sigmas over chance.
-
-    Clutter agrees with a part of any circle; the longer the outline, the less that is by chance.
-    """
-    independent = min(2 * np.pi * radius_pixels, INDEPENDENT_EDGES)
-    return float((share - SHARE_BY_CHANCE) * np.sqrt(independent))
-
-
-def _same(one: Array, other: Array, radius: float) -> bool:
-    """Whether two centres show at about the same place in the picture, at whatever depth."""
-    nearer = min(float(np.linalg.norm(one)), float(np.linalg.norm(other)))
-    angle = np.linalg.norm(one / np.linalg.norm(one) - other / np.linalg.norm(other))
-    return bool(angle < 0.3 * radius / nearer)
-
-
-def _eight_bits(picture: Picture) -> NDArray[np.uint8]:
-    """The picture at 8 bits, stretched where it uses only the dark part of its range."""
-    if picture.dtype == np.uint8:
-        return np.asarray(picture, dtype=np.uint8)
-    return np.asarray(cv2.convertScaleAbs(picture, alpha=255.0 / 65535.0), dtype=np.uint8)
-
-
-def _clipped(window: Window | None, intrinsics: Intrinsics) -> tuple[int, int, int, int]:
-    """The window in whole pixels within the picture. Raises SphereNotFound when it is outside."""
-    if window is None:
-        return 0, 0, intrinsics.width, intrinsics.height
-    x, y, width, height = window
-    left, top = max(0, int(np.floor(x))), max(0, int(np.floor(y)))
-    right = min(intrinsics.width, int(np.ceil(x + width)))
-    bottom = min(intrinsics.height, int(np.ceil(y + height)))
-    if right - left < 8 or bottom - top < 8:
-        raise SphereNotFound(
-            f"the window {[round(float(v)) for v in window]} leaves {max(0, right - left)} x "
-            f"{max(0, bottom - top)} px of the {intrinsics.width} x {intrinsics.height} picture"
+    def _is_clear(self, outline: SphereOutline) -> bool:
+        return (
+            outline.evidence > CLEAR_EVIDENCE
+            and outline.coverage > CLEAR_COVERAGE
+            and self._weight(outline) > self._places.clear_weight
         )
-    return left, top, right - left, bottom - top
+
+    def _rank(self, outline: SphereOutline) -> float:
+        return outline.evidence * self._weight(outline)
+
+    def _weight(self, outline: SphereOutline) -> float:
+        return self._places.weight(self._circle(outline)) if self._hints.weigh else 1.0
+
+    def _circle(self, outline: SphereOutline) -> Circle:
+        return circle_of(self._intrinsics, outline.centre_camera, self._radius)
+
+    def _same(self, one: Array, other: Array) -> bool:
+        """Whether two centres show at about the same place in the picture, at whatever depth."""
+        nearer = min(float(np.linalg.norm(one)), float(np.linalg.norm(other)))
+        angle = np.linalg.norm(one / np.linalg.norm(one) - other / np.linalg.norm(other))
+        return bool(angle < 0.3 * self._radius / nearer)
+
+    def _none(self, refusal: SphereNotFound | None) -> SphereNotFound:
+        where, advice = "in the picture", "give a window around it, or a picture that shows"
+        if self._window is not None:
+            where = f"in the window {[round(float(v)) for v in self._window]}"
+            advice = "give a window that holds it whole, or a picture that shows"
+        if refusal is not None:
+            return type(refusal)(f"no ball found {where}: {refusal}")
+        return SphereNotFound(
+            f"no ball found {where}: no outline of one{self._places.of_size} stands out; {advice} "
+            "all of it with more contrast"
+        )
 
 
-def _largest(window: Window | None, intrinsics: Intrinsics) -> float:
-    size = (intrinsics.width, intrinsics.height) if window is None else window[2:]
-    return 0.6 * float(max(size))
-
-
-def _where(window: Window | None) -> str:
-    if window is None:
-        return "in the picture"
-    return f"in the window {[round(float(v)) for v in window]}"
+def _far(outline: SphereOutline) -> tuple[str, ...]:
+    distance = float(np.linalg.norm(outline.centre_camera))
+    if distance < FARTHEST:
+        return ()
+    return (
+        f"a ball of radius {outline.radius:g} m would be {distance:.0f} m away: is the radius in "
+        "metres?",
+    )

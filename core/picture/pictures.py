@@ -20,10 +20,15 @@ Picture = NDArray[Any]
 Light = NDArray[np.float32]
 
 
-def read_picture(path: str | Path, intrinsics: Intrinsics | None = None) -> Picture:
+def read_picture(
+    path: str | Path, intrinsics: Intrinsics | None = None, *, linear: bool = False
+) -> Picture:
     """Read a picture as (H, W, 3) blue, green, red, 8 or 16 bits, exactly as it is stored.
 
-    A phone's rotation tag is ignored: intrinsics belong to the pixels as the sensor gave them.
+    `linear` tells that the file holds amounts of light, as raw ones do: it is then encoded as all
+    others are, at 16 bits. A phone's rotation tag is ignored: intrinsics belong to the pixels as
+    the sensor gave them.
+
     Raises PictureError when the file is missing, truncated, no picture, or not of the size that
     `intrinsics` state.
     """
@@ -43,7 +48,25 @@ def read_picture(path: str | Path, intrinsics: Intrinsics | None = None) -> Pict
     pixels: Picture = np.asarray(picture)
     if intrinsics is not None:
         check_size(pixels, intrinsics, str(file))
-    return pixels
+    return encoded_light(pixels) if linear else pixels
+
+
+def encoded_light(picture: Picture) -> Picture:
+    """Pixels of linear light, 8 or 16 bits, sRGB-encoded at 16 bits; `linear_light` undoes it."""
+    top = np.iinfo(picture.dtype).max
+    light = np.arange(top + 1) / top
+    encoded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    table = np.rint(encoded * 65535).astype(np.uint16)
+    return table[picture]
+
+
+def eight_bits(picture: Picture) -> NDArray[np.uint8]:
+    """The picture at 8 bits, stretched where 16 bits use the dark part of their range alone."""
+    if picture.dtype == np.uint8:
+        return np.asarray(picture, dtype=np.uint8)
+    brightest = float(picture[::4, ::4].max())
+    top = 65535.0 if brightest > 32767 else max(1.1 * brightest, 255.0)
+    return np.asarray(cv2.convertScaleAbs(picture, alpha=255.0 / top), dtype=np.uint8)
 
 
 def check_size(picture: Picture, intrinsics: Intrinsics, name: str) -> None:

@@ -28,24 +28,44 @@ class Ball:
 
 
 @dataclass(frozen=True)
+class Bar:
+    """A straight finger before the ball: from and to in pixels, round ends, in linear light."""
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    width_pixels: float
+    color: tuple[float, float, float] = (0.04, 0.04, 0.04)
+
+
+@dataclass(frozen=True)
 class Photographer:
     """Light and camera: direction to the light (camera frame), blur, noise, and encoding.
 
-    `blur_pixels` is the sigma of a Gaussian; `noise_grey_levels` that of the noise after encoding;
-    `jpeg_quality` None keeps the picture as it is. `background` is linear light from left to right.
+    `blur_pixels` is the sigma of a Gaussian, `motion_pixels` the way of a shaken camera;
+    `noise_grey_levels` is the sigma of the noise after encoding; `jpeg_quality` None keeps the
+    picture as it is. `background` is linear light from left to right, `checker_pixels` the squares
+    of a board painted on it, its dark ones `checker_contrast` darker. Where `a x + b y + c z < d`
+    for the `shadow` (a, b, c, d), in the camera frame, a ball gets ambient light alone.
     """
 
     light: tuple[float, float, float] = (-0.5, -0.8, -0.6)
     ambient: float = 0.25
     background: tuple[float, float] = (0.08, 0.3)
     texture: float = 0.0
+    checker_pixels: float = 0.0
+    checker_contrast: float = 0.7
+    shadow: tuple[float, float, float, float] | None = None
     blur_pixels: float = 0.5
+    motion_pixels: tuple[float, float] = (0.0, 0.0)
     noise_grey_levels: float = 1.0
     jpeg_quality: int | None = None
     supersampling: int = 5
     seed: int = 0
     hidden: tuple[tuple[float, float, float, float], ...] = field(default=())
     """Rectangles (x, y, width, height) in pixels of something dark in front of the ball."""
+    bars: tuple[Bar, ...] = ()
+    panels: tuple[tuple[tuple[float, float, float, float], tuple[float, float, float]], ...] = ()
+    """Rectangles behind the ball, each with its colour (red, green, blue) in linear light."""
 
 
 def photograph(
@@ -60,8 +80,17 @@ def photograph(
     for x, y, width, height in how.hidden:
         cover = light[round(y) : round(y + height), round(x) : round(x + width)]
         cover[...] = 0.04
+    for bar in how.bars:
+        _lay_before(light, bar)
+    return _developed(light, how, rng)
+
+
+def _developed(light: Array, how: Photographer, rng: np.random.Generator) -> NDArray[np.uint8]:
+    """What the lens, the sensor and the file make of the light."""
     if how.blur_pixels > 0:
         light = cv2.GaussianBlur(light, (0, 0), how.blur_pixels).astype(float)
+    if any(how.motion_pixels):
+        light = cv2.filter2D(light, -1, _way(how.motion_pixels)).astype(float)
     grey_levels = 255 * _encoded(np.clip(light, 0, 1))
     noisy = grey_levels + rng.normal(0, how.noise_grey_levels, light.shape)
     picture = np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
@@ -79,7 +108,42 @@ def _wall(intrinsics: Intrinsics, how: Photographer, rng: np.random.Generator) -
         for size in (1.5, 5.0, 16.0):
             blotches = cv2.GaussianBlur(rng.normal(size=shape), (0, 0), size)
             wall *= np.exp(how.texture * blotches / blotches.std())
-    return np.asarray(wall[:, :, None] * np.array([1.0, 0.95, 0.85]))
+    colored = np.asarray(wall[:, :, None] * np.array([1.0, 0.95, 0.85]))
+    for (x, y, width, height), color in how.panels:
+        left, top = max(round(x), 0), max(round(y), 0)
+        panel = colored[top : max(round(y + height), 0), left : max(round(x + width), 0)]
+        panel[...] = np.array(color)[::-1]
+    if how.checker_pixels > 0:
+        turned = np.array([[0.96, 0.28], [-0.28, 0.96]]) / how.checker_pixels
+        place = np.stack(np.meshgrid(*(np.arange(n) for n in shape[::-1])), axis=2) @ turned
+        dark = np.floor(place).sum(axis=2) % 2 > 0
+        colored[dark] *= 1 - how.checker_contrast
+    return colored
+
+
+def _lay_before(light: Array, bar: Bar) -> None:
+    """Cover what lies within half a bar's width of its middle line, edges in proportion."""
+    start, along = np.array(bar.start), np.array(bar.end) - bar.start
+    rows, columns = np.indices(light.shape[:2])
+    place = np.stack([columns, rows], axis=2) - start
+    share = np.clip(place @ along / max(along @ along, 1e-12), 0, 1)
+    off = np.linalg.norm(place - share[..., None] * along, axis=2)
+    covered = np.clip(0.5 + bar.width_pixels / 2 - off, 0, 1)[..., None]
+    light[...] = light * (1 - covered) + covered * np.array(bar.color)[::-1]
+
+
+def _way(motion_pixels: tuple[float, float]) -> Array:
+    """The kernel of a camera that moves evenly along a straight way."""
+    reach = int(np.ceil(np.abs(motion_pixels).max() / 2)) + 1
+    kernel = np.zeros((2 * reach + 1, 2 * reach + 1))
+    for t in np.linspace(-0.5, 0.5, 64):
+        u, v = reach + t * motion_pixels[0], reach + t * motion_pixels[1]
+        i, j = int(v), int(u)
+        kernel[i, j] += (1 - v + i) * (1 - u + j)
+        kernel[i + 1, j] += (v - i) * (1 - u + j)
+        kernel[i, j + 1] += (1 - v + i) * (u - j)
+        kernel[i + 1, j + 1] += (v - i) * (u - j)
+    return np.asarray(kernel / kernel.sum())
 
 
 def _paint(light: Array, intrinsics: Intrinsics, ball: Ball, how: Photographer) -> None:
@@ -117,11 +181,18 @@ def _shaded(rays: Array, middle: Array, ball: Ball, how: Photographer) -> tuple[
     normals = (np.nan_to_num(rays) * depth[:, None] - middle) / ball.radius
     to_light = np.array(how.light) / np.linalg.norm(how.light)
     facing = np.maximum(normals @ to_light, 0)
+    if how.shadow is not None:
+        facing = facing * _lit(middle + ball.radius * normals, how.shadow)
     mirrored = 2 * facing[:, None] * normals - to_light
-    highlight = np.maximum(-(mirrored * np.nan_to_num(rays)).sum(1), 0) ** 40
+    highlight = np.where(facing > 0, -(mirrored * np.nan_to_num(rays)).sum(1), 0).clip(0) ** 40
     matt = how.ambient + (1 - how.ambient) * facing
     color = matt[:, None] * np.array(ball.color)[::-1] + ball.shine * highlight[:, None]
     return hit.astype(float), np.where(hit[:, None], color, 0.0)
+
+
+def _lit(points: Array, shadow: tuple[float, float, float, float]) -> Array:
+    """Which points (N, 3) the lamp reaches, softly over a millimetre at the shadow's edge."""
+    return np.clip(0.5 + (points @ shadow[:3] - shadow[3]) / 1e-3, 0, 1)
 
 
 def _encoded(light: Array) -> Array:
