@@ -18,6 +18,7 @@ from ..picture.pictures import Picture, read_picture
 from ..pose import Pose
 from ..sighting import SphereSighting
 from .baselines import PoseCandidate, baseline_poses
+from .joint_pose import JointFit
 from .pose_search import ConsistentFit, SeenBall, fit_consistent
 from .position_geometry import PositionGeometry, check_positions
 from .sighting_report import SightingReport, robust_rms, sighting_reports
@@ -34,7 +35,8 @@ class Calibration:
     `misfit` is the factor by which the sightings disagree beyond their own noise (1: not at all);
     the covariance already carries it. `verdict` is good, weak or failed, `warnings` say why.
     For a baseline, `candidates` are all its answers, the closest first, and `camera` stands at
-    that; all else is of the joint fit that it is held against.
+    that; all else is of the joint fit that it is held against. `fit` is that fit, of the sightings
+    `used_indices`, in its order.
     """
 
     camera: Camera
@@ -47,6 +49,8 @@ class Calibration:
     edge_bias_pixels: float
     edge_bias_sigma_pixels: float
     misfit: float
+    fit: JointFit
+    used_indices: tuple[int, ...]
     candidates: tuple[PoseCandidate, ...] = ()
 
     @property
@@ -202,7 +206,8 @@ def _solve(
     )
     reports = sighting_reports(sightings, outlines, failures, found, consistent)
     joint = camera.placed(consistent.fit.camera_from_world, consistent.fit.covariance)
-    calibration = _calibration(joint, method, reports, geometry, consistent)
+    used_indices = tuple(i for i, use in zip(found, consistent.used, strict=True) if use)
+    calibration = _calibration(joint, method, reports, geometry, consistent, used_indices)
     if method != "joint":
         used = [ball for ball, use in zip(balls, consistent.used, strict=True) if use]
         candidates = baseline_poses(method, used)
@@ -227,6 +232,7 @@ def _calibration(
     reports: tuple[SightingReport, ...],
     geometry: PositionGeometry,
     consistent: ConsistentFit,
+    used_indices: tuple[int, ...],
 ) -> Calibration:
     fit = consistent.fit
     left = np.concatenate(fit.residuals_pixels)
@@ -246,4 +252,6 @@ def _calibration(
         fit.edge_bias_pixels,
         fit.edge_bias_sigma_pixels,
         fit.misfit,
+        fit,
+        used_indices,
     )

@@ -23,11 +23,13 @@ from ..errors import DegeneratePositions
 from ..least_squares import levenberg_marquardt
 from ..pose import Pose, point_jacobian
 from ..robust import robust_sigma, tukey_weights
-from .common_error import common_covariance, say_of
+from .common_error import Say, common_covariance, say_of
 
 # 1 sigma of the edge bias that the limb's model leaves, measured on rendered balls
 BIAS_SIGMA_PIXELS = 0.05
 REWEIGHTINGS = 4
+TWIST = ("rotation x", "rotation y", "rotation z", "x", "y", "z")
+UNKNOWNS = (*TWIST, "edge bias")
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +54,9 @@ class JointFit:
       sigma; 1 when all is well. The covariance is already scaled by it.
     - `sighting_misfits` (S,): the same per sighting, over its three degrees of freedom
     - `residuals_pixels`: for each sighting (N,), outwards, the bias taken off
+    - `unknowns`: the P numbers solved for, the pose's twist first; `says` (S,): what each outline
+      says of them, before the misfit; `prior_information` (P, P): what was known beforehand. The
+      covariance of all of them is `inverse(sum of informations + prior) * misfit**2`.
     - `focal_error`: by what share the true focal lengths seem longer than given, with its sigma;
       it is not solved for, only asked
     """
@@ -63,6 +68,9 @@ class JointFit:
     misfit: float
     sighting_misfits: Array
     residuals_pixels: tuple[Array, ...]
+    unknowns: tuple[str, ...]
+    says: tuple[Say, ...]
+    prior_information: Array
     focal_error: float
     focal_error_sigma: float
 
@@ -125,22 +133,24 @@ def _with_errors(
     weights: Sequence[Array],
 ) -> JointFit:
     # the eighth unknown is the focal length: it is not solved for, but asked whether it fits
-    information, gradient, pulls = np.zeros((8, 8)), np.zeros(8), []
+    information, gradient, says = np.zeros((8, 8)), np.zeros(8), []
     information[6, 6] = 1 / BIAS_SIGMA_PIXELS**2
     gradient[6] = state.bias / BIAS_SIGMA_PIXELS**2
+    prior = information[:7, :7].copy()
     for o, t, r, w in zip(observations, held, left, weights, strict=True):
         rows = np.column_stack([_rows(o, t, state.pose), _by_log_focal(o, t)])
         centre = state.pose.apply(o.centre_world)
         allowed = common_covariance(t, centre, o.radius)
         say = say_of(t, rows, r, np.sqrt(w) / o.sigma_pixels, allowed)
         information, gradient = information + say.information, gradient + say.gradient
-        pulls.append(say.pull)
+        says.append(Say(say.information[:7, :7], say.gradient[:7], say.pull))
     covariance = inverse_information(information[:7, :7])
     if covariance is None:
         raise DegeneratePositions(
             "the outlines leave a direction of the pose undetermined; add a ball position away "
             "from the line through the others"
         )
+    pulls = [say.pull for say in says]
     freedom = max(1, 3 * len(observations) - 7)
     # Birge's ratio: three numbers a ball, seven solved for; it may only widen what is stated
     misfit = float(np.sqrt(max(1.0, sum(pulls) / freedom)))
@@ -152,6 +162,9 @@ def _with_errors(
         misfit,
         np.sqrt(np.array(pulls) / 3),
         tuple(left),
+        UNKNOWNS,
+        tuple(says),
+        prior,
         *_focal_error(information, gradient, sum(pulls), freedom),
     )
 
