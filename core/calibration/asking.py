@@ -10,11 +10,18 @@ import numpy as np
 
 from ..arrays import Array
 from ..covariance import inverse_information
+from .place_noise import across_pulls, own_pulls
+
+# with no more left than this the sightings' own noise explains all, and is known beforehand
+ALL_EXPLAINED = 1.5
 
 
 @dataclass(frozen=True)
 class Answer:
-    """How far something seems off, with 1 sigma, and by how many sigmas that is no chance."""
+    """How far something seems off, with 1 sigma, and by how many sigmas that is no chance.
+
+    `explained` is how much of chi-squared it takes away, of what is left without it.
+    """
 
     value: float
     sigma: float
@@ -28,42 +35,58 @@ class Asked:
 
     - `names`: what can be asked beside the P solved: `radius` and `focal` as logarithms of a
       factor, `radial` as an error of the lens' first radial coefficient
-    - `information` (P + A, P + A) and `gradient` (P + A,), priors included
-    - `chi_squared` and `freedom`: what the fit is left with
+    - `information` (P + A, P + A) and `gradient` (P + A,), by the sightings' own noise, with priors
+    - `grams` (S, M, M), `allowed` (S, 3, 3), `chain` (S, M - 1, P + A): the sightings themselves
+    - `freedom` of all that they tell, and `across` the lines of sight alone
     """
 
     names: tuple[str, ...]
     information: Array
     gradient: Array
-    chi_squared: float
+    grams: Array
+    allowed: Array
+    chain: Array
     freedom: int
+    across: int
 
     def about(self, name: str, given: Sequence[str] = ()) -> Answer | None:
         """What solving for `name` too would give, after those `given`; None where it can't be told.
 
-        The significance is that of Student's t, as sigmas of a normal (Wallace 1959): the noise is
-        judged by the same few residuals.
+        Where noise has to be judged by what is left, the significance is that of Student's t, as
+        sigmas of a normal (Wallace 1959).
         """
-        before = self._solved(given)
-        after = self._solved((*given, name))
-        freedom = self.freedom - len(given) - 1
-        if before is None or after is None or freedom < 1:
+        before, after = self._solved(given), self._solved((*given, name))
+        more = len(given) + 1
+        if before is None or after is None or self.across <= more:
             return None
-        explained = after[2] - before[2]
-        left = max(1.0, (self.chi_squared - after[2]) / freedom)
+        left = self._left(after[0], (*given, name))
         value, variance = float(after[0][-1]), float(after[1][-1, -1])
         t = abs(value) / np.sqrt(variance * left)
+        freedom = (self.freedom if left < ALL_EXPLAINED else self.across) - more
         share = (8 * freedom + 1) / (8 * freedom + 3)
         normal = share * np.sqrt(freedom * np.log1p(t * t / freedom))
-        return Answer(value, float(np.sqrt(variance * left)), explained / left, float(normal))
+        explained = (after[2] - before[2]) / left
+        return Answer(value, float(np.sqrt(variance * left)), explained, float(normal))
+
+    def _chosen(self, names: Sequence[str]) -> list[int]:
+        count = len(self.gradient) - len(self.names)
+        return [*range(count), *(count + self.names.index(name) for name in names)]
 
     def _solved(self, names: Sequence[str]) -> tuple[Array, Array, float] | None:
         """Step, covariance, and chi-squared explained, of the P and `names`."""
-        count = len(self.gradient) - len(self.names)
-        chosen = [*range(count), *(count + self.names.index(name) for name in names)]
+        chosen = self._chosen(names)
         gradient = self.gradient[chosen]
         covariance = inverse_information(self.information[np.ix_(chosen, chosen)])
         if covariance is None:
             return None
         step = -covariance @ gradient
         return step, covariance, float(-step @ gradient)
+
+    def _left(self, step: Array, names: Sequence[str]) -> float:
+        """What a step leaves of chi-squared for each degree of freedom, in all and across."""
+        moves = self.chain[:, :, self._chosen(names)] @ step
+        grams = self.grams.copy()
+        grams[:, :-1, -1] += np.einsum("sij,sj->si", self.grams[:, :-1, :-1], moves)
+        in_all = own_pulls(grams, self.allowed).sum() / max(1, self.freedom - len(names))
+        across = across_pulls(grams, self.allowed).sum() / max(1, self.across - len(names))
+        return max(1.0, float(in_all), float(across))

@@ -9,12 +9,11 @@ import numpy as np
 
 from ..arrays import Array
 from ..ball.sphere import Tangency
+from .place_noise import own_pulls
 
 # shading and sampling shift and swell a whole outline without showing in its residuals: by this
 # many square pixels over the ball's radius, within bounds; found on synthetic balls of 9 to 100 px
 COMMON_ERROR, LEAST_COMMON, MOST_COMMON = 0.35, 0.006, 0.05
-# directions of a centre that are told this much worse than the best are not told at all
-NOT_TOLD = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,12 +46,13 @@ def marginalised(grams: Array, allowed: Array) -> tuple[Array, Array]:
     The columns are the centre (3), whatever else moves the residuals, and the residuals last; the
     move has the covariance `allowed` (S, 3, 3), zero for none.
     """
-    of_centre, towards = grams[:, :3, :3], grams[:, :3, -1]
-    swallowed = allowed @ np.linalg.inv(np.eye(3) + of_centre @ allowed)
-    reduced = grams - grams[:, :, :3] @ swallowed @ grams[:, :3, :]
-    spread = of_centre + of_centre @ allowed @ of_centre
-    pulls = np.einsum("si,sij,sj->s", towards, _pseudo_inverse(spread), towards)
-    return reduced, pulls
+    left = np.linalg.solve(np.eye(3) + grams[:, :3, :3] @ allowed, grams[:, :3, :])
+    reduced = grams - grams[:, :, :3] @ allowed @ left
+    # what is left of the centre itself is too little for a difference, where much is allowed
+    reduced[:, :3, :] = left
+    reduced[:, :, :3] = np.swapaxes(left, 1, 2)
+    reduced[:, :3, :3] = 0.5 * (left[:, :, :3] + np.swapaxes(left[:, :, :3], 1, 2))
+    return reduced, own_pulls(grams, allowed)
 
 
 def common_covariance(held: Tangency, centre: Array, radius: float) -> Array:
@@ -72,12 +72,3 @@ def common_of(by_centre: Array, centre: Array, radius: float) -> Array:
     along = np.outer(axis, axis)
     covariance: Array = aside**2 * (np.eye(3) - along) + deep**2 * along
     return covariance
-
-
-def _pseudo_inverse(matrices: Array) -> Array:
-    """Of symmetric matrices (S, 3, 3), without what they do not tell."""
-    values, vectors = np.linalg.eigh(matrices)
-    told = values > NOT_TOLD * np.maximum(values[:, -1:], 1e-300)
-    inverse = np.where(told, 1 / np.where(told, values, 1.0), 0.0)
-    result: Array = (vectors * inverse[:, None, :]) @ np.swapaxes(vectors, 1, 2)
-    return result

@@ -13,7 +13,7 @@ from ..errors import DegeneratePositions, NotConverged
 from .agreement import fewest_of, largest_agreement
 from .contradictions import mistaken_unit, what_to_check
 from .joint_pose import JointFit, fit_pose
-from .seen import Seen
+from .seen import Beliefs, Seen
 from .start_poses import Start, start_poses
 from .unknowns import Refinable
 
@@ -26,6 +26,8 @@ ODD_PIXELS = 0.5
 ALL_WELL, PAYING_MISFIT = 3.0, 0.5
 # leaving one out is tried for those that promise most
 TRIED_WITHOUT = 8
+# by so many directions more than are unknown the rest checks itself
+LEFT_TO_CHECK = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +59,7 @@ def fit_consistent(seen: Sequence[Seen], refine: Sequence[Refinable] = ()) -> Co
         together = _best_of_starts(seen, everything, refine)
     except DegeneratePositions:
         together = None
-    if together is not None and together.fit.misfit < ALL_WELL and not _odd(together).any():
+    if together is not None and together.fit.disagreement < ALL_WELL and not _odd(together).any():
         return together
     if len(seen) <= fewest_of(seen):
         if together is None:
@@ -66,9 +68,7 @@ def fit_consistent(seen: Sequence[Seen], refine: Sequence[Refinable] = ()) -> Co
             )
         return together
     best = _without_the_odd(seen, refine)
-    # leaving sightings out has to pay: an error that all share is not mended by using fewer
-    pays = together is None or best.fit.misfit < PAYING_MISFIT * together.fit.misfit
-    return best if pays or together is None else together
+    return best if together is None or _pays(seen, best, together) else together
 
 
 def fitted(
@@ -85,13 +85,28 @@ def fitted(
     return ConsistentFit(fit, used, off, misfits)
 
 
+def _pays(seen: Sequence[Seen], best: ConsistentFit, together: ConsistentFit) -> bool:
+    """Whether leaving sightings out pays: an error that all share is not mended by using fewer.
+
+    Nor is one that no eye would see, a robot's own. Where little is left to check the rest with, it
+    has to be plain: the sightings left out are not even roughly where they should be.
+    """
+    left_out = np.flatnonzero(~best.used)
+    plain = best.off_pixels[left_out] > ODD_PIXELS
+    if 2 * best.used.sum() - 6 - 3 * len(best.fit.targets) < LEFT_TO_CHECK:
+        centres = best.start.centres([seen[i].place for i in left_out])
+        plain &= Beliefs.of([seen[i] for i in left_out]).disagreement(centres) > 1
+    paid = best.fit.disagreement < PAYING_MISFIT * together.fit.disagreement
+    return bool(plain.all()) and paid
+
+
 def _best_of_starts(seen: Sequence[Seen], used: Mask, refine: Sequence[Refinable]) -> ConsistentFit:
     chosen = [one.hint for one, use in zip(seen, used, strict=True) if use]
     starts = start_poses(chosen)
     # what is far worse as a start does not become the best; two that are near may change places
     near = [s for s in starts[:3] if s.cost <= 100 * starts[0].cost + 1e-9]
     fits = [fitted(seen, used, start, refine) for start in near]
-    return min(fits, key=lambda one: one.fit.asked.chi_squared)
+    return min(fits, key=lambda one: one.fit.chi_squared)
 
 
 def _odd(fit: ConsistentFit) -> Mask:
@@ -107,7 +122,7 @@ def _without_the_odd(seen: Sequence[Seen], refine: Sequence[Refinable]) -> Consi
         odd = _odd(fit) & fit.used
         left = [one for one, use in zip(seen, fit.used, strict=True) if use]
         least = fewest_of(left)
-        if len(left) <= least or (fit.fit.misfit < ALL_WELL and not odd.any()):
+        if len(left) <= least or (fit.fit.disagreement < ALL_WELL and not odd.any()):
             break
         if odd.any() and (fit.used & ~odd).sum() >= least:
             fit = fitted(seen, fit.used & ~odd, fit.start, refine)
@@ -134,8 +149,8 @@ def _best_without_one(
             tried.append(_best_of_starts(seen, fewer, refine))
         except DegeneratePositions:
             continue
-    best = min(tried, key=lambda one: one.fit.misfit, default=None)
-    pays = best is not None and best.fit.misfit < PAYING_MISFIT * fit.fit.misfit
+    best = min(tried, key=lambda one: one.fit.disagreement, default=None)
+    pays = best is not None and best.fit.disagreement < PAYING_MISFIT * fit.fit.disagreement
     return best if pays else None
 
 

@@ -37,10 +37,10 @@ def without_rivals(
             continue
         if not any(same_pose(rival.start, other.start) for other in fits):
             fits.append(rival)
-    fits.sort(key=lambda one: one.fit.asked.chi_squared)
+    fits.sort(key=lambda one: one.fit.chi_squared)
     best = fits[0]
-    limit = best.fit.asked.chi_squared + RULED_OUT * best.fit.misfit**2
-    as_good = [one for one in fits if one.fit.asked.chi_squared < limit]
+    limit = best.fit.chi_squared + RULED_OUT * best.fit.disagreement**2
+    as_good = [one for one in fits if one.fit.chi_squared < limit]
     if len(as_good) > 1:
         places = " and ".join(_told(one.fit.camera_from_base) for one in as_good)
         raise AmbiguousPose(

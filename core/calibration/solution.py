@@ -148,7 +148,7 @@ class Problem:
             robust_rms(left),
             fit.edge_bias_pixels,
             fit.edge_bias_sigma_pixels,
-            fit.misfit,
+            fit.disagreement,
             fit,
             used,
             refined=fit.refined,

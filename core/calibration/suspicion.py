@@ -12,7 +12,7 @@ from .asking import Answer
 from .joint_pose import JointFit
 
 # by how many sigmas something has to be off, and by what share or by how many pixels at least
-SIGMAS = 3.3
+SIGMAS = 3.0
 LEAST = {"radius": 0.005, "focal": 0.003}
 LEAST_RADIAL_PIXELS = 0.3
 # what explains the residuals nearly as well can't be told apart: two sigmas less

@@ -52,7 +52,7 @@ def verdict_of(
         *doubts,
     )
     off = float(np.sqrt(np.mean(np.concatenate(fit.residuals_pixels) ** 2)))
-    if (fit.misfit > FAILED_MISFIT and off > FAILED_OFF_PIXELS) or kept < 3 or lonely:
+    if (fit.disagreement > FAILED_MISFIT and off > FAILED_OFF_PIXELS) or kept < 3 or lonely:
         return "failed", warnings
     few = 2 * len(rejected) > kept or 2 * len(doubtful) > kept
     return ("weak" if doubts or few or geometry.warnings() else "good"), warnings
@@ -71,10 +71,11 @@ def _nothing_to_check_with(kept: int) -> str:
 def _doubts(lens: Intrinsics, fit: JointFit, radius: float | None) -> list[str]:
     suspected = suspicions(fit, radius, lens)
     doubts = list(suspected)
-    if fit.misfit > WEAK_MISFIT:
+    if fit.disagreement > WEAK_MISFIT:
         doubts.append(
-            f"the sightings disagree {fit.misfit:.1f} times more than their outlines' noise "
-            "explains: check the ball's radius, the intrinsics and the robot's positions"
+            f"the sightings disagree {fit.disagreement:.1f} times more than their outlines' noise "
+            f"explains, as if each place were off by {1e3 * fit.place_sigma:.2g} mm: check the "
+            "ball's radius, the intrinsics and the robot's positions"
         )
     if abs(fit.edge_bias_pixels) > WEAK_BIAS_PIXELS and not suspected:
         doubts.append(

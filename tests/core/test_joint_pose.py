@@ -122,7 +122,7 @@ def test_the_errors_of_many_fits_reach_the_cramer_rao_bound(trials):
 def test_the_noise_left_is_the_noise_put_in(trials):
     left = np.concatenate([np.concatenate(fit.residuals_pixels) for fit in trials])
     assert left.std() == pytest.approx(NOISE, rel=0.05)
-    misfits = [fit.misfit for fit in trials]
+    misfits = [fit.disagreement for fit in trials]
     assert np.median(misfits) < 1.3
 
 
@@ -136,5 +136,6 @@ def test_balls_that_are_not_where_the_robot_says_show_in_the_misfit():
         for o in observations
     ]
     fit, honest = fit_pose(moved, START), fit_pose(observations, START)
-    assert fit.misfit > 4 > honest.misfit
+    assert fit.disagreement > 4 > honest.disagreement
+    assert fit.place_sigma == pytest.approx(2e-3, rel=0.5)
     assert (np.diag(fit.covariance) > 9 * np.diag(honest.covariance)).all()
