@@ -46,6 +46,14 @@ class TooFewPictures(MonocellError):
     """Fewer pictures of a calibration board than a lens needs."""
 
 
+class AmbiguousPose(MonocellError):
+    """Several poses fit the sightings equally well."""
+
+
+class NotObservable(MonocellError):
+    """Something is to be refined that these sightings can't tell well enough."""
+
+
 class PickError(MonocellError):
     """A picked pixel can't mean what it was picked for (above the horizon, behind the camera)."""
 

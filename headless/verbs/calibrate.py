@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from ...core.calibration.calibrate import METHODS, Calibration, calibrate_cell
+from ...core.calibration.calibrate import METHODS, REFINABLE, Calibration, calibrate_cell
 from ...core.document.cell_file import read_cell, write_cell
 from ...core.document.entries import camera_entry, pose_entry
+from ..calibration_unknowns import unknowns_document, unknowns_told
 from ..cli import DONE, NOT_TRUSTED
 from ..told import millimetres, point_told, print_json, table, warn
 
@@ -27,12 +28,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="joint: all outlines at once (default); baselines on the balls' centres: frames (the "
         "paper's triads), p3p (its depths from distances, every candidate), pnp (SQPnP)",
     )
+    parser.add_argument(
+        "--refine",
+        action="append",
+        default=[],
+        choices=REFINABLE,
+        help="solve for the focal length or the ball's radius too (may be given twice); refused "
+        "where the sightings can't tell it",
+    )
     parser.add_argument("--json", action="store_true", help="print JSON")
 
 
 def run(args: argparse.Namespace) -> int:
     """Calibrate, tell, write; a calibration that failed is told but not written."""
-    cell, calibration = calibrate_cell(read_cell(args.cell), args.method)
+    cell, calibration = calibrate_cell(read_cell(args.cell), args.method, args.refine)
     failed = calibration.verdict == "failed"
     if args.out is not None and not failed:
         write_cell(cell, args.out)
@@ -63,6 +72,7 @@ def document(calibration: Calibration) -> dict[str, Any]:
         "edge_bias_pixels": calibration.edge_bias_pixels,
         "edge_bias_sigma_pixels": calibration.edge_bias_sigma_pixels,
         "misfit": calibration.misfit,
+        **unknowns_document(calibration),
         "positions": {
             "count": calibration.geometry.count,
             "length": calibration.geometry.length,
@@ -71,7 +81,7 @@ def document(calibration: Calibration) -> dict[str, Any]:
         },
         "candidates": [
             {
-                "camera_from_world": pose_entry(candidate.camera_from_world),
+                "camera_from_base": pose_entry(candidate.camera_from_base),
                 "off_pixels": candidate.off_pixels,
             }
             for candidate in calibration.candidates
@@ -104,13 +114,15 @@ def tell(calibration: Calibration) -> None:
     else:
         print(f"1 sigma   unknown: the baseline {calibration.method} states none")
         for candidate in calibration.candidates:
-            centre = candidate.camera_from_world.inverse().translation
+            centre = candidate.camera_from_base.inverse().translation
             print(f"candidate {point_told(centre)}, balls {candidate.off_pixels:.2f} px off")
         print("what follows is of the joint fit that the baseline is held against")
     print(
         f"outlines  {calibration.rms_pixels:.2f} px rms, edge bias "
         f"{calibration.edge_bias_pixels:+.3f} ± {calibration.edge_bias_sigma_pixels:.3f} px"
     )
+    for line in unknowns_told(calibration):
+        print(line)
     rows = [
         (
             report.picture,
