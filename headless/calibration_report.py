@@ -1,0 +1,324 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The report of a calibration: its numbers in, lines for a person or a JSON document out."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..core.calibration.accuracy import Accuracy, SurfaceAccuracy
+from ..core.calibration.advise import Advice
+from ..core.calibration.calibrate import Calibration
+from ..core.calibration.ellipsoid import Ellipsoid, PoseError
+from ..core.calibration.leave_one_out import LeftOut
+from ..core.calibration.sighting_report import SightingReport
+from ..core.document.entries import camera_entry, pose_entry
+from .told import point_told, table
+
+WIDTH, INDENT, LONGEST_NAME = 100, 11, 30
+# more sightings than this are not all listed for a person
+MOST_LISTED = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Report:
+    """All that is told of a calibration; `surface_name` is the surface asked for."""
+
+    calibration: Calibration
+    accuracy: Accuracy
+    surface_name: str
+    advice: Advice | None = None
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        return (*self.calibration.warnings, *self.accuracy.warnings)
+
+
+def document(report: Report) -> dict[str, Any]:
+    """The whole report as JSON values; metres, unless the name has another unit."""
+    calibration, accuracy = report.calibration, report.accuracy
+    camera = calibration.camera
+    sigma = camera.rotation_sigma()
+    return {
+        "verdict": calibration.verdict,
+        "warnings": report.warnings,
+        "method": calibration.method,
+        "camera": camera_entry(camera),
+        "center_world": camera.centre_world,
+        "center_sigma": camera.centre_sigma(),
+        "rotation_sigma_degrees": None if sigma is None else np.degrees(sigma),
+        "ellipsoid_95": None if accuracy.error is None else _ellipsoids(accuracy.error),
+        "surface": None if accuracy.surface is None else _surface(accuracy.surface),
+        "rms_pixels": calibration.rms_pixels,
+        "edge_bias_pixels": calibration.edge_bias_pixels,
+        "edge_bias_sigma_pixels": calibration.edge_bias_sigma_pixels,
+        "misfit": calibration.misfit,
+        "positions": _positions(report),
+        "candidates": [
+            {
+                "camera_from_world": pose_entry(candidate.camera_from_world),
+                "off_pixels": candidate.off_pixels,
+            }
+            for candidate in calibration.candidates
+        ],
+        "sightings": [
+            _sighting(one, without)
+            for one, without in zip(calibration.sightings, accuracy.without, strict=True)
+        ],
+        "advice": None if report.advice is None else _advice(report.advice),
+    }
+
+
+def tell(report: Report) -> None:
+    """The report for a person, in lines of at most 100 characters where names allow."""
+    for name, lines in _sections(report):
+        for i, line in enumerate(lines):
+            print(f"{(name if i == 0 else '').ljust(INDENT)}{line}")
+    print()
+    _tell_sightings(report)
+    if report.advice is not None:
+        print()
+        _tell_advice(report.advice)
+    print()
+    print(f"verdict   {report.calibration.verdict}")
+
+
+def _sections(report: Report) -> list[tuple[str, list[str]]]:
+    calibration, error = report.calibration, report.accuracy.error
+    sections = [("camera", [f"at {point_told(calibration.camera.centre_world)}"])]
+    if error is None:
+        sections.append(("1 sigma", _baseline(calibration)))
+    else:
+        sections += [("position", _position(error)), ("rotation", _rotation(error))]
+        sections.append(("surface", _surface_told(report)))
+    sections.append(("positions", _geometry(report)))
+    bias = f"{calibration.edge_bias_pixels:+.3f} ± {calibration.edge_bias_sigma_pixels:.3f} px"
+    sections.append(("outlines", [f"{calibration.rms_pixels:.2f} px rms, edge bias {bias}"]))
+    return sections
+
+
+def _baseline(calibration: Calibration) -> list[str]:
+    lines = [f"unknown: the baseline {calibration.method} states none"]
+    for candidate in calibration.candidates:
+        centre = candidate.camera_from_world.inverse().translation
+        lines.append(f"candidate {point_told(centre)}, balls {candidate.off_pixels:.2f} px off")
+    return [*lines, "what follows is of the joint fit that the baseline is held against"]
+
+
+def _position(error: PoseError) -> list[str]:
+    axes = ", ".join(_mm(s) for s in error.position_sigma)
+    reach = " x ".join(_mm(s) for s in error.position.semi_axes)
+    return [
+        f"± {_mm(error.position_total)} mm, 1 sigma ({axes} along x, y, z)",
+        f"95 % within ± {reach} mm, most along {_direction(error.position)}",
+    ]
+
+
+def _rotation(error: PoseError) -> list[str]:
+    axes = ", ".join(f"{np.degrees(s):.3f}" for s in error.rotation_sigma)
+    reach = " x ".join(f"{np.degrees(s):.3f}" for s in error.rotation.semi_axes)
+    return [
+        f"± {np.degrees(error.rotation_total):.3f} deg, 1 sigma ({axes} about the camera's x, y, "
+        "z)",
+        f"95 % within ± {reach} deg, most about {_direction(error.rotation)}",
+    ]
+
+
+def _direction(shape: Ellipsoid) -> str:
+    return "(" + ", ".join(f"{v:.2f}" for v in shape.directions[0]) + ")"
+
+
+def _surface_told(report: Report) -> list[str]:
+    surface = report.accuracy.surface
+    if surface is None:
+        return [f"the picture shows nothing of {report.surface_name}; --surface names another"]
+    name, area = surface.plane.name, surface.area
+    lines = textwrap.wrap(
+        f"a point on {name} is known to {_mm(surface.at_work)} mm {area.told}; "
+        f"{_mm(surface.at_centre)} at the picture's centre (1 sigma)",
+        WIDTH - INDENT,
+    )
+    chosen = [0, surface.grid.shape[0] // 2, surface.grid.shape[0] - 1]
+    rows = [[_mm(surface.grid[i, j]) for j in chosen] for i in chosen]
+    width = max(len(cell) for row in rows for cell in row)
+    grid = ["   ".join(cell.rjust(width) for cell in row) for row in rows]
+    return [*lines, "over the picture, mm:  " + grid[0], *(" " * 23 + row for row in grid[1:])]
+
+
+def _geometry(report: Report) -> list[str]:
+    geometry, span = report.calibration.geometry, report.accuracy.span
+    return [
+        f"{geometry.count} used, {1e3 * geometry.length:.0f} mm long, "
+        f"{1e3 * geometry.off_line:.0f} mm off a line, {1e3 * geometry.off_plane:.0f} mm off a "
+        "plane",
+        f"over {100 * span.share:.0f} % of the picture ({100 * span.width_share:.0f} % of its "
+        f"width, {100 * span.height_share:.0f} % of its height), {span.nearest:.2f} to "
+        f"{span.farthest:.2f} m away",
+    ]
+
+
+def _tell_sightings(report: Report) -> None:
+    sightings = report.calibration.sightings
+    listed = _listed(sightings, report.accuracy.without)
+    rows = [_row(sightings[i], report.accuracy.without[i]) for i in listed]
+    header = ("sighting", "status", "rms px", "off px", "off mm", "moves mm", "turns deg", "sigmas")
+    print(table(header, rows))
+    if len(listed) < len(sightings):
+        print(f"and {len(sightings) - len(listed)} more, all used, that move less; --json has all")
+    print("moves, turns, sigmas: what leaving the sighting out does to the camera")
+    for i in listed:
+        if sightings[i].reason:
+            said = f"{_short(sightings[i].picture)}: {sightings[i].reason}"
+            print("\n".join(textwrap.wrap(said, WIDTH, subsequent_indent="    ")))
+
+
+def _listed(sightings: Sequence[SightingReport], without: Sequence[LeftOut | None]) -> list[int]:
+    """Those a person should look at first, in the document's order."""
+    order = sorted(
+        range(len(sightings)),
+        key=lambda i: (
+            ("rejected", "doubtful", "used").index(sightings[i].status),
+            -_sigmas(without[i]),
+        ),
+    )
+    odd = sum(one.status != "used" for one in sightings)
+    return sorted(order[: max(MOST_LISTED, odd)])
+
+
+def _sigmas(change: LeftOut | None) -> float:
+    return np.inf if change is None else change.sigmas
+
+
+def _row(one: SightingReport, without: LeftOut | None) -> tuple[str, ...]:
+    left_out = ("-", "-", "-")
+    if without is not None:
+        left_out = (_mm(without.moves), f"{np.degrees(without.turn):.3f}", f"{without.sigmas:.1f}")
+    numbers = (one.rms_pixels, one.off_pixels, one.off_millimetres)
+    return (_short(one.picture), one.status, *(_number(n) for n in numbers), *left_out)
+
+
+def _tell_advice(advice: Advice) -> None:
+    first, *later = advice.steps
+    said = (
+        f"next: hold the ball at {_place(first.position_world)}: a point on "
+        f"{advice.area.plane.name}, {advice.area.told}, is then known to {_mm(first.sigma)} mm "
+        f"instead of {_mm(advice.sigma)}"
+    )
+    print("\n".join(textwrap.wrap(said, WIDTH, subsequent_indent="    ")))
+    for step in later:
+        print(f"then: {_place(step.position_world)}: {_mm(step.sigma)} mm")
+    print(
+        f"chosen from {advice.usable} positions that the camera sees well, of {advice.tried}; "
+        "mind the arm's reach"
+    )
+
+
+def _place(position: Any) -> str:
+    return "(" + ", ".join(f"{v:.3f}" for v in position) + ")"
+
+
+def _ellipsoids(error: PoseError) -> dict[str, Any]:
+    return {
+        "position": {
+            "semi_axes": error.position.semi_axes,
+            "directions_world": error.position.directions,
+        },
+        "rotation": {
+            "semi_axes_degrees": np.degrees(error.rotation.semi_axes),
+            "directions_world": error.rotation.directions,
+        },
+        "sigmas": error.reach,
+        "degrees_of_freedom": error.freedom,
+    }
+
+
+def _surface(surface: SurfaceAccuracy) -> dict[str, Any]:
+    return {
+        "name": surface.plane.name,
+        "work_area": surface.area.told,
+        "sigma_at_work": surface.at_work,
+        "sigma_at_picture_centre": surface.at_centre,
+        "sigma_median": surface.median,
+        "sigma_worst": surface.worst,
+        "share_of_picture": surface.seen,
+        "grid_pixels": surface.grid_pixels,
+        "grid_sigma": surface.grid,
+    }
+
+
+def _positions(report: Report) -> dict[str, Any]:
+    geometry, span = report.calibration.geometry, report.accuracy.span
+    return {
+        "count": geometry.count,
+        "length": geometry.length,
+        "off_line": geometry.off_line,
+        "off_plane": geometry.off_plane,
+        "share_of_picture": span.share,
+        "share_of_width": span.width_share,
+        "share_of_height": span.height_share,
+        "nearest": span.nearest,
+        "farthest": span.farthest,
+    }
+
+
+def _sighting(one: SightingReport, without: LeftOut | None) -> dict[str, Any]:
+    return {
+        "picture": one.picture,
+        "center": one.center_world,
+        "status": one.status,
+        "reason": one.reason,
+        "rms_pixels": one.rms_pixels,
+        "off_pixels": one.off_pixels,
+        "off_millimetres": one.off_millimetres,
+        "left_out": None
+        if without is None
+        else {
+            "center_moves": without.centre_moves,
+            "turns_degrees": np.degrees(without.turns),
+            "sigmas": without.sigmas,
+            "position_sigma": without.position_sigma,
+            "agreement": without.agreement,
+            "chance": without.chance,
+        },
+    }
+
+
+def _advice(advice: Advice) -> dict[str, Any]:
+    return {
+        "surface": advice.area.plane.name,
+        "work_area": advice.area.told,
+        "sigma": advice.sigma,
+        "position_sigma": advice.position_sigma,
+        "tried": advice.tried,
+        "usable": advice.usable,
+        "next": [
+            {
+                "center": step.position_world,
+                "pixel": step.pixel,
+                "radius_pixels": step.radius_pixels,
+                "sigma": step.sigma,
+                "position_sigma": step.position_sigma,
+            }
+            for step in advice.steps
+        ],
+    }
+
+
+def _short(name: str) -> str:
+    return name if len(name) <= LONGEST_NAME else "..." + name[3 - LONGEST_NAME :]
+
+
+def _mm(metres: float) -> str:
+    """Metres in millimetres with three digits or so; `-` for what is not known."""
+    value = 1e3 * metres
+    if np.isnan(value):
+        return "-"
+    return f"{value:.2f}" if value < 9.995 else f"{value:.1f}" if value < 99.95 else f"{value:.0f}"
+
+
+def _number(value: float) -> str:
+    return "-" if np.isnan(value) else f"{value:.2f}"
