@@ -16,7 +16,8 @@ import argparse
 import numpy as np
 from monocell.core.ball.sphere import OutlineRays, outline_pixels, sphere_from_rays, tangency
 from monocell.core.calibration.frames import pose_from_points, pose_from_triads
-from monocell.core.calibration.joint_pose import BIAS_SIGMA_PIXELS, OutlineObservation, fit_pose
+from monocell.core.calibration.joint_pose import BIAS_SIGMA_PIXELS, fit_pose
+from monocell.core.calibration.observation import OutlineObservation, Place
 from monocell.core.errors import MonocellError
 from monocell.core.intrinsics import Intrinsics
 from monocell.core.pose import Pose, point_jacobian
@@ -45,9 +46,9 @@ def _row(count: int, rigs: int, noise: float) -> tuple[str, ...]:
         pose, places = _rig(rng, count)
         observations, centres = _outlines(rng, pose, places, noise)
         fit = fit_pose(observations, pose)
-        twist = _twist(fit.camera_from_world, pose)
+        twist = _twist(fit.camera_from_base, pose)
         squares.append(twist @ _information(observations, pose, noise) @ twist / 6)
-        joint.append(_errors(fit.camera_from_world, pose))
+        joint.append(_errors(fit.camera_from_base, pose))
         frames.append(_errors(_or_nothing(pose_from_triads, places[:3], centres[:3]), pose)[0])
         rigid.append(_errors(_or_nothing(pose_from_points, places, centres), pose)[0])
     place, turn = np.median(joint, axis=0)
@@ -80,7 +81,7 @@ def _outlines(
         normals = tangency(OutlineRays.of(LENS, exact), centre, RADIUS).normals
         moved = exact + normals * (bias + rng.normal(0, noise, POINTS))[:, None]
         rays = OutlineRays.of(LENS, moved)
-        observations.append(OutlineObservation(rays, np.full(POINTS, noise), place, RADIUS))
+        observations.append(OutlineObservation(rays, np.full(POINTS, noise), Place(place), RADIUS))
         centres.append(sphere_from_rays(rays.rays, RADIUS))
     return observations, np.array(centres)
 
@@ -90,7 +91,7 @@ def _information(observations: list[OutlineObservation], pose: Pose, noise: floa
     information = np.zeros((7, 7))
     information[6, 6] = BIAS_SIGMA_PIXELS**-2
     for o in observations:
-        centre = pose.apply(o.centre_world)
+        centre = pose.apply(o.place.offset)
         by_centre = tangency(o.outline, centre, o.radius).by_centre
         rows = np.column_stack([by_centre @ point_jacobian(centre), -np.ones(POINTS)]) / noise
         information += rows.T @ rows

@@ -121,18 +121,19 @@ class Tangency:
     normals: Array
 
 
-def tangency(outline: OutlineRays, centre_camera: ArrayLike, radius: float) -> Tangency:
+def tangency(outline: OutlineRays, centre_camera: ArrayLike, radius: float | Array) -> Tangency:
     """Hold measured outline pixels against the sphere at `centre_camera` (3,) with `radius`.
 
     The angle between ray and centre is compared with the sphere's `asin(r / |C|)`, and turned into
     pixels by the angle's own gradient there: exact for any lens, to first order in the residual.
+    Centres (N, 3) and radii (N,) hold each pixel against a sphere of its own.
     """
     centre = np.asarray(centre_camera, dtype=float)
-    distance = float(np.linalg.norm(centre))
-    axis, sine = centre / distance, min(radius / distance, 1 - 1e-9)
+    distance = np.sqrt((centre * centre).sum(axis=-1, keepdims=True))
+    axis, sine = centre / distance, np.minimum(radius / distance[..., 0], 1 - 1e-9)
     cosine = np.sqrt(1 - sine * sine)
     rays = outline.rays
-    along = rays @ axis
+    along = np.einsum("ni,...i->n" if centre.ndim == 1 else "ni,ni->n", rays, axis)
     across = rays - along[:, None] * axis
     off_axis = np.maximum(_lengths(across), 1e-12)
     outwards = across / off_axis[:, None]
@@ -141,8 +142,9 @@ def tangency(outline: OutlineRays, centre_camera: ArrayLike, radius: float) -> T
     turning = along[:, None] * outwards - off_axis[:, None] * axis
     gradient = np.einsum("ni,nij->nj", turning, outline.rays_by_pixel)
     per_pixel = 1.0 / _lengths(gradient)
-    by_centre = (axis * (sine / cosine) - outwards) * (per_pixel / distance)[:, None]
-    by_radius = -per_pixel / (distance * cosine)
+    tilt = (sine / cosine)[..., None]
+    by_centre = (axis * tilt - outwards) * (per_pixel[:, None] / distance)
+    by_radius = -per_pixel / (distance[..., 0] * cosine)
     return Tangency(angle * per_pixel, by_centre, by_radius, gradient * per_pixel[:, None])
 
 

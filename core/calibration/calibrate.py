@@ -205,7 +205,7 @@ def _solve(
         [ball.centre_world for ball, use in zip(balls, consistent.used, strict=True) if use]
     )
     reports = sighting_reports(sightings, outlines, failures, found, consistent)
-    joint = camera.placed(consistent.fit.camera_from_world, consistent.fit.covariance)
+    joint = camera.placed(consistent.fit.camera_from_base, consistent.fit.covariance)
     used_indices = tuple(i for i, use in zip(found, consistent.used, strict=True) if use)
     calibration = _calibration(joint, method, reports, geometry, consistent, used_indices)
     if method != "joint":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pose that all outlines agree on: measured outlines of balls at known places in, pose out.
+"""The pose that all sightings agree on: measured outlines and points in, pose and errors out.
 
 One least-squares problem over every outline point of every sighting, instead of one centre a ball:
 a single ball tells its depth badly and its direction well, and the joint fit uses each as it
@@ -17,51 +17,40 @@ from functools import partial
 import numpy as np
 
 from ..arrays import Array
-from ..ball.sphere import OutlineRays, Tangency, tangency
 from ..covariance import inverse_information
 from ..errors import DegeneratePositions
 from ..least_squares import levenberg_marquardt
-from ..pose import Pose, point_jacobian
+from ..pose import Pose
 from ..robust import robust_sigma, tukey_weights
-from .common_error import Say, common_covariance, say_of
+from .asking import Asked
+from .common_error import Say, common_of, marginalised
+from .measured import Measured
+from .observation import Observation, OutlineObservation, numbers_told
+from .unknowns import BIAS, Columns, Refinable, Refined, State, Unknowns
 
 # 1 sigma of the edge bias that the limb's model leaves, measured on rendered balls
 BIAS_SIGMA_PIXELS = 0.05
-REWEIGHTINGS = 4
-TWIST = ("rotation x", "rotation y", "rotation z", "x", "y", "z")
-UNKNOWNS = (*TWIST, "edge bias")
-
-
-@dataclass(frozen=True, eq=False)
-class OutlineObservation:
-    """Outline points (N,) of a ball at `centre_world` (3,), with their sigmas (N,).
-
-    `principal_point` (2,) in pixels is that of the lens; without it the focal length is not asked.
-    """
-
-    outline: OutlineRays
-    sigma_pixels: Array
-    centre_world: Array
-    radius: float
-    principal_point: Array | None = None
+REWEIGHTINGS = 3
 
 
 @dataclass(frozen=True, eq=False)
 class JointFit:
-    """The pose with its covariance (6, 6), the shared bias, and what each outline is left with.
+    """The pose with its covariance (6, 6), the shared bias, and what each sighting is left with.
 
-    - `misfit`: how much more the outlines disagree than their own noise explains, as a factor on
+    - `misfit`: how much more the sightings disagree than their own noise explains, as a factor on
       sigma; 1 when all is well. The covariance is already scaled by it.
-    - `sighting_misfits` (S,): the same per sighting, over its three degrees of freedom
+    - `places_base` (S, 3): where each target is, in the frame that the pose is from; `offsets`
+      (K, 3) are those solved for, with 1 sigma, by `targets`
+    - `sighting_misfits` (S,): the same per sighting, over its degrees of freedom
     - `residuals_pixels`: for each sighting (N,), outwards, the bias taken off
-    - `unknowns`: the P numbers solved for, the pose's twist first; `says` (S,): what each outline
+    - `unknowns`: the P numbers solved for, the pose's twist first; `says` (S,): what each sighting
       says of them, before the misfit; `prior_information` (P, P): what was known beforehand. The
       covariance of all of them is `inverse(sum of informations + prior) * misfit**2`.
-    - `focal_error`: by what share the true focal lengths seem longer than given, with its sigma;
-      it is not solved for, only asked
+    - `refined`: by what factor refining changed radius and focal length
+    - `asked`: what is not solved for, but would explain the residuals better
     """
 
-    camera_from_world: Pose
+    camera_from_base: Pose
     covariance: Array
     edge_bias_pixels: float
     edge_bias_sigma_pixels: float
@@ -71,124 +60,163 @@ class JointFit:
     unknowns: tuple[str, ...]
     says: tuple[Say, ...]
     prior_information: Array
-    focal_error: float
-    focal_error_sigma: float
+    places_base: Array
+    targets: tuple[str, ...]
+    offsets: Array
+    offset_sigmas: Array
+    refined: tuple[Refined, ...]
+    asked: Asked
 
 
-@dataclass(frozen=True, eq=False)
-class _State:
-    pose: Pose
-    bias: float
+def fit_pose(
+    observations: Sequence[Observation],
+    start: Pose,
+    offsets: Array | None = None,
+    refine: Sequence[Refinable] = (),
+) -> JointFit:
+    """The maximum-likelihood pose, with Tukey's weights against stray points of an outline.
 
-    def moved(self, step: Array) -> _State:
-        return _State(self.pose.perturbed(step[:6]), self.bias + float(step[6]))
+    `offsets` (K, 3) is where to start those of unknown targets, in the order in which they come.
 
-
-def fit_pose(observations: Sequence[OutlineObservation], start: Pose) -> JointFit:
-    """The maximum-likelihood pose of the outlines, with Tukey's weights against stray points.
-
-    Raises DegeneratePositions when the outlines leave a direction of the pose undetermined.
+    Raises DegeneratePositions when the sightings leave a direction of the pose undetermined.
     """
-    state = _State(start, 0.0)
-    weights = [np.ones(len(o.sigma_pixels)) for o in observations]
+    measured, unknowns = Measured.of(observations), Unknowns.of(observations, refine)
+    state = State(start, np.zeros((0, 3)) if offsets is None else np.asarray(offsets, dtype=float))
+    weights = np.ones(len(measured.sigma_pixels))
     for _ in range(REWEIGHTINGS):
-        evaluate = partial(_whitened, observations=observations, weights=tuple(weights))
-        state = levenberg_marquardt(state, evaluate, _State.moved).value
-        held = [_held(o, state.pose) for o in observations]
-        left = [t.residual_pixels - state.bias for t in held]
-        scaled = [r / o.sigma_pixels for r, o in zip(left, observations, strict=True)]
-        weights = [tukey_weights(s, max(1.0, robust_sigma(s))) for s in scaled]
-    return _with_errors(state, observations, held, left, weights)
+        evaluate = partial(_whitened, measured=measured, unknowns=unknowns, weights=weights)
+        state = levenberg_marquardt(state, evaluate, unknowns.moved).value
+        columns = _columns(measured, unknowns, state)
+        weights = _weights(measured, columns, weights)
+    return _with_errors(observations, measured, unknowns, state, columns, weights)
 
 
-def _held(observation: OutlineObservation, pose: Pose) -> Tangency:
-    centre = pose.apply(observation.centre_world)
-    return tangency(observation.outline, centre, observation.radius)
-
-
-def _rows(observation: OutlineObservation, held: Tangency, pose: Pose) -> Array:
-    """Derivatives (N, 7) of the residuals by twist and bias."""
-    by_twist = held.by_centre @ point_jacobian(pose.apply(observation.centre_world))
-    return np.hstack([by_twist, -np.ones((len(by_twist), 1))])
+def _columns(measured: Measured, unknowns: Unknowns, state: State) -> Columns:
+    return measured.columns(state.camera_from_base.apply(unknowns.places_base(state)), state)
 
 
 def _whitened(
-    state: _State, observations: Sequence[OutlineObservation], weights: Sequence[Array]
+    state: State, measured: Measured, unknowns: Unknowns, weights: Array
 ) -> tuple[Array, Array]:
-    residuals = [np.array([state.bias / BIAS_SIGMA_PIXELS])]
-    rows = [np.array([[0, 0, 0, 0, 0, 0, 1 / BIAS_SIGMA_PIXELS]])]
-    for observation, weight in zip(observations, weights, strict=True):
-        held = _held(observation, state.pose)
-        root = np.sqrt(weight) / observation.sigma_pixels
-        residuals.append((held.residual_pixels - state.bias) * root)
-        rows.append(_rows(observation, held, state.pose) * root[:, None])
-    return np.concatenate(residuals), np.concatenate(rows)
+    columns = _columns(measured, unknowns, state)
+    root = np.sqrt(weights) / measured.sigma_pixels
+    rows = unknowns.rows(columns, measured.owner, state) * root[:, None]
+    prior = np.zeros((1, rows.shape[1]))
+    prior[0, BIAS] = 1 / BIAS_SIGMA_PIXELS
+    residuals = np.append(columns.residual_pixels * root, state.edge_bias_pixels * prior[0, BIAS])
+    return residuals, np.vstack([rows, prior])
+
+
+def _grams(measured: Measured, columns: Columns, weights: Array) -> Array:
+    """Products (S, 8, 8) of each sighting's whitened columns, its residuals the last of them."""
+    stacked = np.column_stack([columns.by_centre, columns.shared, columns.residual_pixels])
+    stacked *= (np.sqrt(weights) / measured.sigma_pixels)[:, None]
+    return np.array([stacked[rows].T @ stacked[rows] for rows in measured.rows])
+
+
+def _weights(measured: Measured, columns: Columns, weights: Array) -> Array:
+    """Tukey's weights of each outline against itself, wherever the others would have it.
+
+    Else a ball in a wrong place would be voted down point by point, and nobody told.
+    """
+    grams = _grams(measured, columns, weights)
+    moves = np.array([np.linalg.lstsq(g[:3, :3], g[:3, -1], rcond=1e-12)[0] for g in grams])
+    own = columns.residual_pixels - np.einsum("ni,ni->n", columns.by_centre, moves[measured.owner])
+    scaled = own / measured.sigma_pixels
+    count = len(measured.radii)
+    if not count:
+        return weights
+    outlines = tukey_weights(scaled[:count], max(1.0, robust_sigma(scaled[:count])))
+    return np.concatenate([outlines, np.ones(len(scaled) - count)])
 
 
 def _with_errors(
-    state: _State,
-    observations: Sequence[OutlineObservation],
-    held: Sequence[Tangency],
-    left: Sequence[Array],
-    weights: Sequence[Array],
+    observations: Sequence[Observation],
+    measured: Measured,
+    unknowns: Unknowns,
+    state: State,
+    columns: Columns,
+    weights: Array,
 ) -> JointFit:
-    # the eighth unknown is the focal length: it is not solved for, but asked whether it fits
-    information, gradient, says = np.zeros((8, 8)), np.zeros(8), []
-    information[6, 6] = 1 / BIAS_SIGMA_PIXELS**2
-    gradient[6] = state.bias / BIAS_SIGMA_PIXELS**2
-    prior = information[:7, :7].copy()
-    for o, t, r, w in zip(observations, held, left, weights, strict=True):
-        rows = np.column_stack([_rows(o, t, state.pose), _by_log_focal(o, t)])
-        centre = state.pose.apply(o.centre_world)
-        allowed = common_covariance(t, centre, o.radius)
-        say = say_of(t, rows, r, np.sqrt(w) / o.sigma_pixels, allowed)
-        information, gradient = information + say.information, gradient + say.gradient
-        says.append(Say(say.information[:7, :7], say.gradient[:7], say.pull))
-    covariance = inverse_information(information[:7, :7])
+    centres = state.camera_from_base.apply(unknowns.places_base(state))
+    allowed = _allowed(observations, measured, columns, centres)
+    reduced, pulls = marginalised(_grams(measured, columns, weights), allowed)
+    says = _says(reduced, pulls, unknowns.chain(state))
+    asked = _asked(says, unknowns, state, sum(numbers_told(o) for o in observations))
+    count = unknowns.count
+    covariance = inverse_information(asked.information[:count, :count])
     if covariance is None:
-        raise DegeneratePositions(
-            "the outlines leave a direction of the pose undetermined; add a ball position away "
-            "from the line through the others"
-        )
-    pulls = [say.pull for say in says]
-    freedom = max(1, 3 * len(observations) - 7)
-    # Birge's ratio: three numbers a ball, seven solved for; it may only widen what is stated
-    misfit = float(np.sqrt(max(1.0, sum(pulls) / freedom)))
+        raise DegeneratePositions(_undetermined(unknowns))
+    # Birge's ratio: three numbers a ball, two a point; it may only widen what is stated
+    misfit = float(np.sqrt(max(1.0, pulls.sum() / asked.freedom)))
+    sigmas = np.sqrt(np.diag(covariance)) * misfit
     return JointFit(
-        state.pose,
+        state.camera_from_base,
         covariance[:6, :6] * misfit**2,
-        state.bias,
-        float(np.sqrt(covariance[6, 6])) * misfit,
+        state.edge_bias_pixels,
+        float(sigmas[BIAS]),
         misfit,
-        np.sqrt(np.array(pulls) / 3),
-        tuple(left),
-        UNKNOWNS,
-        tuple(says),
-        prior,
-        *_focal_error(information, gradient, sum(pulls), freedom),
+        np.sqrt(pulls / [numbers_told(o) for o in observations]),
+        tuple(columns.residual_pixels[rows] for rows in measured.rows),
+        unknowns.names,
+        tuple(Say(s.information[:count, :count], s.gradient[:count], s.pull) for s in says),
+        _prior(count),
+        unknowns.places_base(state),
+        unknowns.targets,
+        state.offsets,
+        sigmas[BIAS + 1 : unknowns.after_offsets].reshape(-1, 3),
+        unknowns.refinements(state, sigmas),
+        asked,
     )
 
 
-def _by_log_focal(observation: OutlineObservation, held: Tangency) -> Array:
-    """Derivative (N,) of the residuals by the logarithm of both focal lengths.
-
-    A longer lens shows what it sees farther out: against it every pixel lies nearer the middle.
-    """
-    if observation.principal_point is None:
-        return np.zeros(len(held.normals))
-    from_middle = observation.outline.pixels - observation.principal_point
-    by_log: Array = -np.einsum("ni,ni->n", held.normals, from_middle)
-    return by_log
+def _says(reduced: Array, pulls: Array, chain: Array) -> list[Say]:
+    """What each sighting says of everything, solved for or only asked."""
+    turned = np.swapaxes(chain, 1, 2)
+    informations = turned @ reduced[:, :-1, :-1] @ chain
+    gradients = (turned @ reduced[:, :-1, -1:])[..., 0]
+    return [Say(i, g, float(p)) for i, g, p in zip(informations, gradients, pulls, strict=True)]
 
 
-def _focal_error(
-    information: Array, gradient: Array, pull: float, freedom: int
-) -> tuple[float, float]:
-    """By what share the focal length seems off, and its sigma; NaN where it can't be told."""
-    covariance = inverse_information(information)
-    if covariance is None or freedom < 2:
-        return float("nan"), float("nan")
-    step = -covariance @ gradient
-    explained = float(step @ information @ step)
-    left = max(1.0, (pull - explained) / (freedom - 1))
-    return float(step[7]), float(np.sqrt(covariance[7, 7] * left))
+def _asked(says: Sequence[Say], unknowns: Unknowns, state: State, told: int) -> Asked:
+    prior = _prior(len(says[0].gradient))
+    gradient = prior[BIAS] * state.edge_bias_pixels
+    return Asked(
+        unknowns.asked,
+        sum((say.information for say in says), prior),
+        sum((say.gradient for say in says), gradient),
+        sum(say.pull for say in says) + state.edge_bias_pixels * float(gradient[BIAS]),
+        max(1, told - unknowns.count),
+    )
+
+
+def _prior(count: int) -> Array:
+    prior = np.zeros((count, count))
+    prior[BIAS, BIAS] = 1 / BIAS_SIGMA_PIXELS**2
+    return prior
+
+
+def _allowed(
+    observations: Sequence[Observation], measured: Measured, columns: Columns, centres: Array
+) -> Array:
+    """What shading and sampling move each ball's centre by, unseen (S, 3, 3); points by nothing."""
+    return np.array(
+        [
+            common_of(columns.by_centre[rows], centre, o.radius)
+            if isinstance(o, OutlineObservation)
+            else np.zeros((3, 3))
+            for o, rows, centre in zip(observations, measured.rows, centres, strict=True)
+        ]
+    )
+
+
+def _undetermined(unknowns: Unknowns) -> str:
+    if unknowns.targets:
+        return (
+            "the sightings leave a direction of the pose or of the unknown offset undetermined; "
+            "turn the flange about two axes between sightings, and add sightings"
+        )
+    return (
+        "the outlines leave a direction of the pose undetermined; add a ball position away "
+        "from the line through the others"
+    )

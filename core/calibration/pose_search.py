@@ -18,7 +18,8 @@ from ..intrinsics import Intrinsics
 from ..least_squares import levenberg_marquardt
 from ..pose import Pose, point_jacobian
 from .frames import pose_from_points
-from .joint_pose import JointFit, OutlineObservation, fit_pose
+from .joint_pose import JointFit, fit_pose
+from .observation import OutlineObservation, Place
 
 # a sighting is odd when its own outline would rather have the ball this many sigmas elsewhere,
 # beyond what the sightings have in common
@@ -59,9 +60,9 @@ class SeenBall:
         observation = OutlineObservation(
             rays.chosen(used),
             outline.sigma_pixels[used],
-            centre_world,
+            Place(centre_world),
             outline.radius,
-            np.array([intrinsics.cx, intrinsics.cy]),
+            intrinsics,
         )
         return SeenBall(centre_world, outline, observation)
 
@@ -126,7 +127,7 @@ def _fitted(balls: Sequence[SeenBall], used: Mask, start: Pose) -> ConsistentFit
     fit = fit_pose([ball.observation for ball in chosen], start)
     misfits = np.full(len(balls), np.nan)
     misfits[used] = fit.sighting_misfits
-    off = np.array([off_pixels(ball, fit.camera_from_world) for ball in balls])
+    off = np.array([off_pixels(ball, fit.camera_from_base) for ball in balls])
     return ConsistentFit(fit, used, off, misfits)
 
 
@@ -152,7 +153,7 @@ def _without_the_odd(balls: Sequence[SeenBall]) -> ConsistentFit:
         if fit.used.sum() <= 3 or (fit.fit.misfit < ALL_WELL and not odd.any()):
             break
         if odd.any():
-            fit = _fitted(balls, fit.used & ~odd, fit.fit.camera_from_world)
+            fit = _fitted(balls, fit.used & ~odd, fit.fit.camera_from_base)
             continue
         better = _best_without_one(balls, fit)
         if better is None:

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from monocell.core import Camera, Cell, Distortion, Intrinsics, Pose, SphereSighting
 from monocell.core.ball.sphere import OutlineRays, outline_pixels, tangency
-from monocell.core.calibration.joint_pose import OutlineObservation
+from monocell.core.calibration.observation import OutlineObservation, Place
 from monocell.core.picture.synthetic import Ball, Photographer, photograph
 
 RADIUS = 0.04
@@ -76,7 +76,7 @@ def exact_outlines(places, noise=None, rng=None, count=80):
             off = off + rng.normal(0, how.sigma, count)
         outline = OutlineRays.of(LENS, pixels + normals * off[:, None])
         stated = np.full(count, max(how.sigma, 0.01))
-        observations.append(OutlineObservation(outline, stated, place, RADIUS))
+        observations.append(OutlineObservation(outline, stated, Place(place), RADIUS, LENS))
     return observations
 
 

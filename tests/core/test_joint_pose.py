@@ -16,7 +16,8 @@ from ball_rig import (
     sigmas_off,
 )
 from monocell.core.ball.sphere import OutlineRays, tangency
-from monocell.core.calibration.joint_pose import BIAS_SIGMA_PIXELS, OutlineObservation, fit_pose
+from monocell.core.calibration.joint_pose import BIAS_SIGMA_PIXELS, fit_pose
+from monocell.core.calibration.observation import OutlineObservation, Place
 from monocell.core.errors import DegeneratePositions
 from monocell.core.pose import point_jacobian
 
@@ -28,25 +29,25 @@ TRIALS = 60
 
 def test_exact_outlines_give_the_exact_pose():
     fit = fit_pose(exact_outlines(PLACES), START)
-    np.testing.assert_allclose(pose_twist(fit.camera_from_world), 0, atol=1e-8)
+    np.testing.assert_allclose(pose_twist(fit.camera_from_base), 0, atol=1e-8)
     assert abs(fit.edge_bias_pixels) < 1e-6
     assert fit.misfit == 1.0
 
 
 def test_three_balls_are_enough():
     fit = fit_pose(exact_outlines(PLACES[:3]), START)
-    np.testing.assert_allclose(pose_twist(fit.camera_from_world), 0, atol=1e-7)
+    np.testing.assert_allclose(pose_twist(fit.camera_from_base), 0, atol=1e-7)
 
 
 def test_half_the_outlines_are_enough():
     observations = [
         OutlineObservation(
-            o.outline.chosen(np.arange(80) < 40), o.sigma_pixels[:40], o.centre_world, RADIUS
+            o.outline.chosen(np.arange(80) < 40), o.sigma_pixels[:40], o.place, RADIUS
         )
         for o in exact_outlines(PLACES)
     ]
     fit = fit_pose(observations, START)
-    np.testing.assert_allclose(pose_twist(fit.camera_from_world), 0, atol=1e-7)
+    np.testing.assert_allclose(pose_twist(fit.camera_from_base), 0, atol=1e-7)
 
 
 @pytest.mark.parametrize("bias", [-0.06, 0.04])
@@ -54,7 +55,7 @@ def test_an_edge_bias_that_all_outlines_share_is_found_and_kept_out_of_the_pose(
     fit = fit_pose(exact_outlines(PLACES, OutlineNoise(bias=bias)), START)
     assert fit.edge_bias_pixels == pytest.approx(bias, abs=0.01)
     assert fit.edge_bias_sigma_pixels < BIAS_SIGMA_PIXELS
-    assert sigmas_off(pose_twist(fit.camera_from_world), fit.covariance) < 1.0
+    assert sigmas_off(pose_twist(fit.camera_from_base), fit.covariance) < 1.0
 
 
 def test_stray_points_are_outvoted():
@@ -68,7 +69,7 @@ def test_stray_points_are_outvoted():
         for name in ("pixels", "rays", "rays_by_pixel"):
             object.__setattr__(observation.outline, name, getattr(spoilt, name))
     fit = fit_pose(observations, START)
-    assert sigmas_off(pose_twist(fit.camera_from_world), fit.covariance) < 6
+    assert sigmas_off(pose_twist(fit.camera_from_base), fit.covariance) < 6
 
 
 def test_balls_in_one_place_leave_the_pose_open():
@@ -86,7 +87,7 @@ def trials():
 
 
 def test_the_errors_of_many_fits_are_no_larger_than_they_state(trials):
-    errors = np.array([pose_twist(fit.camera_from_world) for fit in trials])
+    errors = np.array([pose_twist(fit.camera_from_base) for fit in trials])
     stated = np.mean([fit.covariance for fit in trials], axis=0)
     ratio = np.sqrt((errors**2).mean(axis=0) / np.diag(stated))
     # what outlines have in common is stated too, and is not in this noise: careful, not wild
@@ -98,11 +99,11 @@ def test_the_errors_of_many_fits_are_no_larger_than_they_state(trials):
 
 
 def test_the_errors_of_many_fits_reach_the_cramer_rao_bound(trials):
-    errors = np.array([pose_twist(fit.camera_from_world) for fit in trials])
+    errors = np.array([pose_twist(fit.camera_from_base) for fit in trials])
     information = np.zeros((7, 7))
     information[6, 6] = 1 / BIAS_SIGMA_PIXELS**2
     for observation in exact_outlines(PLACES):
-        centre = POSE.apply(observation.centre_world)
+        centre = POSE.apply(observation.place.offset)
         held = tangency(observation.outline, centre, RADIUS)
         rows = np.hstack([held.by_centre @ point_jacobian(centre), -np.ones((80, 1))])
         information += rows.T @ rows / NOISE**2
@@ -130,7 +131,7 @@ def test_balls_that_are_not_where_the_robot_says_show_in_the_misfit():
     observations = exact_outlines(PLACES, OutlineNoise(0.05), rng)
     moved = [
         OutlineObservation(
-            o.outline, o.sigma_pixels, o.centre_world + rng.normal(0, 2e-3, 3), RADIUS
+            o.outline, o.sigma_pixels, Place(o.place.offset + rng.normal(0, 2e-3, 3)), RADIUS
         )
         for o in observations
     ]
