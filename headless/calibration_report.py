@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The report of a calibration: its numbers in, lines for a person or a JSON document out."""
+"""The report of a calibration for a person: its numbers in, lines of at most 100 characters out."""
 
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from ..core.calibration.accuracy import Accuracy, SurfaceAccuracy
+from ..core.arrays import Array
+from ..core.calibration.accuracy import Accuracy
 from ..core.calibration.advise import Advice
 from ..core.calibration.calibrate import Calibration
 from ..core.calibration.ellipsoid import Ellipsoid, PoseError
 from ..core.calibration.leave_one_out import LeftOut
 from ..core.calibration.sighting_report import SightingReport
-from ..core.document.entries import camera_entry, pose_entry
 from .told import point_told, table
 
 WIDTH, INDENT, LONGEST_NAME = 100, 11, 30
@@ -38,43 +37,8 @@ class Report:
         return (*self.calibration.warnings, *self.accuracy.warnings)
 
 
-def document(report: Report) -> dict[str, Any]:
-    """The whole report as JSON values; metres, unless the name has another unit."""
-    calibration, accuracy = report.calibration, report.accuracy
-    camera = calibration.camera
-    sigma = camera.rotation_sigma()
-    return {
-        "verdict": calibration.verdict,
-        "warnings": report.warnings,
-        "method": calibration.method,
-        "camera": camera_entry(camera),
-        "center_world": camera.centre_world,
-        "center_sigma": camera.centre_sigma(),
-        "rotation_sigma_degrees": None if sigma is None else np.degrees(sigma),
-        "ellipsoid_95": None if accuracy.error is None else _ellipsoids(accuracy.error),
-        "surface": None if accuracy.surface is None else _surface(accuracy.surface),
-        "rms_pixels": calibration.rms_pixels,
-        "edge_bias_pixels": calibration.edge_bias_pixels,
-        "edge_bias_sigma_pixels": calibration.edge_bias_sigma_pixels,
-        "misfit": calibration.misfit,
-        "positions": _positions(report),
-        "candidates": [
-            {
-                "camera_from_world": pose_entry(candidate.camera_from_world),
-                "off_pixels": candidate.off_pixels,
-            }
-            for candidate in calibration.candidates
-        ],
-        "sightings": [
-            _sighting(one, without)
-            for one, without in zip(calibration.sightings, accuracy.without, strict=True)
-        ],
-        "advice": None if report.advice is None else _advice(report.advice),
-    }
-
-
 def tell(report: Report) -> None:
-    """The report for a person, in lines of at most 100 characters where names allow."""
+    """Print it."""
     for name, lines in _sections(report):
         for i, line in enumerate(lines):
             print(f"{(name if i == 0 else '').ljust(INDENT)}{line}")
@@ -205,107 +169,20 @@ def _tell_advice(advice: Advice) -> None:
     first, *later = advice.steps
     said = (
         f"next: hold the ball at {_place(first.position_world)}: a point on "
-        f"{advice.area.plane.name}, {advice.area.told}, is then known to {_mm(first.sigma)} mm "
-        f"instead of {_mm(advice.sigma)}"
+        f"{advice.area.plane.name} is then known to {_mm(first.sigma)} mm instead of "
+        f"{_mm(advice.sigma)}"
     )
-    print("\n".join(textwrap.wrap(said, WIDTH, subsequent_indent="    ")))
+    print("\n".join(textwrap.wrap(said, WIDTH, subsequent_indent="      ")))
     for step in later:
-        print(f"then: {_place(step.position_world)}: {_mm(step.sigma)} mm")
+        print(f"then: at {_place(step.position_world)}: {_mm(step.sigma)} mm")
     print(
-        f"chosen from {advice.usable} positions that the camera sees well, of {advice.tried}; "
-        "mind the arm's reach"
+        f"of {advice.tried} positions the camera sees {advice.usable} well; whether the arm "
+        "reaches them is yours to say"
     )
 
 
-def _place(position: Any) -> str:
+def _place(position: Array) -> str:
     return "(" + ", ".join(f"{v:.3f}" for v in position) + ")"
-
-
-def _ellipsoids(error: PoseError) -> dict[str, Any]:
-    return {
-        "position": {
-            "semi_axes": error.position.semi_axes,
-            "directions_world": error.position.directions,
-        },
-        "rotation": {
-            "semi_axes_degrees": np.degrees(error.rotation.semi_axes),
-            "directions_world": error.rotation.directions,
-        },
-        "sigmas": error.reach,
-        "degrees_of_freedom": error.freedom,
-    }
-
-
-def _surface(surface: SurfaceAccuracy) -> dict[str, Any]:
-    return {
-        "name": surface.plane.name,
-        "work_area": surface.area.told,
-        "sigma_at_work": surface.at_work,
-        "sigma_at_picture_centre": surface.at_centre,
-        "sigma_median": surface.median,
-        "sigma_worst": surface.worst,
-        "share_of_picture": surface.seen,
-        "grid_pixels": surface.grid_pixels,
-        "grid_sigma": surface.grid,
-    }
-
-
-def _positions(report: Report) -> dict[str, Any]:
-    geometry, span = report.calibration.geometry, report.accuracy.span
-    return {
-        "count": geometry.count,
-        "length": geometry.length,
-        "off_line": geometry.off_line,
-        "off_plane": geometry.off_plane,
-        "share_of_picture": span.share,
-        "share_of_width": span.width_share,
-        "share_of_height": span.height_share,
-        "nearest": span.nearest,
-        "farthest": span.farthest,
-    }
-
-
-def _sighting(one: SightingReport, without: LeftOut | None) -> dict[str, Any]:
-    return {
-        "picture": one.picture,
-        "center": one.center_world,
-        "status": one.status,
-        "reason": one.reason,
-        "rms_pixels": one.rms_pixels,
-        "off_pixels": one.off_pixels,
-        "off_millimetres": one.off_millimetres,
-        "left_out": None
-        if without is None
-        else {
-            "center_moves": without.centre_moves,
-            "turns_degrees": np.degrees(without.turns),
-            "sigmas": without.sigmas,
-            "position_sigma": without.position_sigma,
-            "agreement": without.agreement,
-            "chance": without.chance,
-        },
-    }
-
-
-def _advice(advice: Advice) -> dict[str, Any]:
-    return {
-        "surface": advice.area.plane.name,
-        "work_area": advice.area.told,
-        "sigma": advice.sigma,
-        "position_sigma": advice.position_sigma,
-        "tried": advice.tried,
-        "usable": advice.usable,
-        "next": [
-            {
-                "center": step.position_world,
-                "pixel": step.pixel,
-                "radius_pixels": step.radius_pixels,
-                "sigma": step.sigma,
-                "position_sigma": step.position_sigma,
-            }
-            for step in advice.steps
-        ],
-    }
 
 
 def _short(name: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..cell import Cell
+from ..errors import InvalidValue
 from ..reference import ReferencePlane
 from .advise import Advice, TypicalOutline, advise
 from .calibrate import Calibration
@@ -73,8 +74,8 @@ def accuracy_of(cell: Cell, calibration: Calibration, plane: ReferencePlane) -> 
     if error is not None:
         warnings = leverage_warnings(_names(calibration, used), changes, error.position_total)
     surface = None if error is None else surface_accuracy(cell, calibration, plane)
-    places = np.array([calibration.sightings[i].center_world for i in used])
-    span = span_of(cell.camera.intrinsics, fit.camera_from_world.apply(places))
+    centres_camera = fit.camera_from_base.apply(fit.places_base)
+    span = span_of(calibration.camera.intrinsics, centres_camera)
     return Accuracy(error, span, surface, tuple(without), warnings)
 
 
@@ -109,10 +110,15 @@ def surface_accuracy(
 def advised(calibration: Calibration, area: WorkArea, candidates_world: Array) -> Advice:
     """Which of candidate positions (N, 3) lower the error in `area` most.
 
-    Raises InvalidValue when none of them can be seen well.
+    Raises InvalidValue when none of them can be seen well, when there are only points, and for an
+    offset or a camera on the flange.
     """
     reports = [calibration.sightings[i] for i in calibration.used_indices]
-    typical = TypicalOutline.of([r.outline for r in reports if r.outline is not None])
+    outlines = [r.outline for r in reports if r.outline is not None]
+    if not outlines:
+        raise InvalidValue("advice needs at least one ball: points tell nothing of its outline")
+    grown = next((one.factor for one in calibration.fit.refined if one.name == "radius"), 1.0)
+    typical = TypicalOutline.of(outlines, grown)
     places = np.array([report.center_world for report in reports])
     return advise(calibration.camera, calibration.fit, area, typical, candidates_world, places)
 

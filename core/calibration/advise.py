@@ -17,12 +17,14 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, frozen
 from ..ball.outline import MOST_POINTS, SphereOutline
-from ..ball.sphere import OutlineRays, Tangency, tangency
+from ..ball.sphere import OutlineRays, tangency
 from ..camera import Camera
 from ..errors import InvalidValue
-from ..pose import point_jacobian
 from .common_error import common_covariance, say_of
 from .joint_pose import JointFit
+from .measured import Measured
+from .observation import OutlineObservation, Place
+from .unknowns import State, Unknowns
 from .work_surface import WorkArea
 
 MOST_ADVISED = 3
@@ -75,14 +77,14 @@ class TypicalOutline:
     weight_per_pixel: float
 
     @staticmethod
-    def of(outlines: Sequence[SphereOutline]) -> TypicalOutline:
-        """The middle one of those measured, at least one."""
+    def of(outlines: Sequence[SphereOutline], grown: float = 1.0) -> TypicalOutline:
+        """The middle one of those measured, at least one; the radius by a refined factor."""
         weights = [
             float((1 / o.sigma_pixels[o.used] ** 2).sum()) / (2 * np.pi * _radius_pixels(o.pixels))
             for o in outlines
         ]
         return TypicalOutline(
-            float(np.median([o.radius for o in outlines])), float(np.median(weights))
+            grown * float(np.median([o.radius for o in outlines])), float(np.median(weights))
         )
 
 
@@ -120,8 +122,10 @@ def advise(
 ) -> Advice:
     """The best three of candidate positions (N, 3), beside those used already (M, 3).
 
-    Raises InvalidValue when none of them can be seen well, with how many fail why.
+    Raises InvalidValue when none of them can be seen well, with how many fail why, and where the
+    ball's places are not known in the world.
     """
+    _refuse_unknown_places(fit, used_world)
     candidates = frozen(candidates_world, (None, 3), "advised positions")
     used = np.asarray(used_world, dtype=float).reshape(-1, 3)
     seen, informations, why = [], [], Counter[str]()
@@ -144,13 +148,27 @@ def advise(
     return Advice(area, sigma_now, _centre_sigma(now[0]), steps, len(candidates), len(seen))
 
 
+def _refuse_unknown_places(fit: JointFit, used_world: ArrayLike) -> None:
+    places = np.asarray(used_world, dtype=float)
+    if fit.targets or places.shape != fit.places_base.shape:
+        raise InvalidValue("advice needs balls at known places; here the offset is solved for too")
+    if not np.allclose(places, fit.places_base, atol=1e-9):
+        raise InvalidValue("advice is for a camera that stands still; this one is carried")
+
+
 def _predicted(
     camera: Camera, fit: JointFit, typical: TypicalOutline, place: Array, outline: OutlineRays
 ) -> Array:
     """What a ball not seen yet would say of the fit's P unknowns, (P, P)."""
     centre = camera.pose.apply(place)
     held = tangency(outline, centre, typical.radius)
-    rows = _rows(fit, centre, held)
+    rows = _rows(
+        camera,
+        fit,
+        OutlineObservation(
+            outline, np.ones(SAMPLES), Place(place), typical.radius, camera.intrinsics
+        ),
+    )
     # an outline is measured at so many places at most, however long it is
     length = min(2 * np.pi * _radius_pixels(outline.pixels), MOST_POINTS)
     root = np.full(SAMPLES, np.sqrt(typical.weight_per_pixel * length / SAMPLES))
@@ -158,17 +176,13 @@ def _predicted(
     return say_of(held, rows, np.zeros(SAMPLES), root, allowed).information
 
 
-def _rows(fit: JointFit, centre: Array, held: Tangency) -> Array:
-    """Derivatives (SAMPLES, P) of an outline's residuals by the fit's unknowns."""
-    by_twist = held.by_centre @ point_jacobian(centre)
-    known = {"edge bias": -np.ones(SAMPLES)}
-    missing = [name for name in fit.unknowns[6:] if name not in known]
-    if missing:
-        raise InvalidValue(
-            f"advice is for a fixed camera and a ball at known places; {', '.join(missing)} "
-            "is solved for here"
-        )
-    return np.column_stack([by_twist, *(known[name] for name in fit.unknowns[6:])])
+def _rows(camera: Camera, fit: JointFit, observation: OutlineObservation) -> Array:
+    """Derivatives (N, P) of an outline's residuals by the fit's unknowns."""
+    refined = tuple(one.name for one in fit.refined)
+    measured, unknowns = Measured.of([observation]), Unknowns.of([observation], refined)
+    state = State(camera.pose, np.zeros((0, 3)))
+    columns = measured.columns(camera.pose.apply(unknowns.places_base(state)), state)
+    return unknowns.rows(columns, measured.owner, state)
 
 
 def _view(camera: Camera, place: Array, radius: float, used: Array) -> OutlineRays | str:
@@ -203,7 +217,7 @@ def _none_usable(why: Counter[str], count: int) -> str:
         return "advised positions: there are none to choose from"
     return (
         f"none of the {count} positions to choose from would show the ball well ({reasons}); "
-        "give others"
+        "give others, in metres"
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -16,8 +17,7 @@ SHARE = 0.95
 # chi-squared of three degrees of freedom, and from where on Fisher's F is no different
 CHI_SQUARED_95 = 7.814727903
 MANY = 1e5
-# a say's equations count where their eigenvalue is this share of the largest
-DETERMINED = 1e-2
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ def pose_error(camera: Camera, fit: JointFit) -> PoseError | None:
         rotation,
         ellipsoid(world_from_camera @ shift @ world_from_camera.T, reach),
         ellipsoid(world_from_camera @ turn @ world_from_camera.T, reach),
-        freedom_of(fit),
+        fit.asked.freedom,
         reach,
     )
 
@@ -95,18 +95,13 @@ def reach_95(fit: JointFit) -> float:
     widens; so the scale is taken from the sightings themselves. In simulation the truth lies
     inside in 95 % of the cases or more, whatever the true scale.
     """
-    freedom = freedom_of(fit)
+    freedom = fit.asked.freedom
     found = sum(say.pull for say in fit.says) / freedom
     on_first_scale = max(CHI_SQUARED_95, found * three_f_quantile(freedom))
     return math.sqrt(on_first_scale) / fit.misfit
 
 
-def freedom_of(fit: JointFit) -> int:
-    """How many more equations the sightings give than the fit has unknowns, one at least."""
-    equations = sum(_rank(say.information) for say in fit.says)
-    return max(1, equations - len(fit.unknowns))
-
-
+@cache
 def three_f_quantile(freedom: float, share: float = SHARE) -> float:
     """Three times the quantile of Fisher's F(3, freedom); chi-squared(3)'s for infinitely many.
 
@@ -136,14 +131,7 @@ def _three_f_cdf(angle: float, freedom: float) -> float:
     The incomplete beta function I_x(3/2, freedom/2) with `x = sin(angle)^2`, which makes its
     integrand smooth: `sin^2 cos^(freedom - 1)`.
     """
-    nodes, weights = np.polynomial.legendre.leggauss(64)
-    at = 0.5 * angle * (nodes + 1)
+    at = 0.5 * angle * (NODES + 1)
     log_beta = math.lgamma(1.5) + math.lgamma(freedom / 2) - math.lgamma(1.5 + freedom / 2)
     integrand = np.sin(at) ** 2 * np.cos(at) ** (freedom - 1)
-    return float(angle * (weights @ integrand) / math.exp(log_beta))
-
-
-def _rank(information: Array) -> int:
-    scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
-    values = np.linalg.eigvalsh(information / np.outer(scale, scale))
-    return int((values > DETERMINED * values[-1]).sum())
+    return float(angle * (WEIGHTS @ integrand) / math.exp(log_beta))

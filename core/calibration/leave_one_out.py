@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import Array
 from ..covariance import inverse_information
 from .common_error import Say
-from .ellipsoid import freedom_of, three_f_tail
+from .ellipsoid import three_f_tail
 from .joint_pose import JointFit
 
 # the pose hangs on a sighting without which the camera moves by so many of its stated sigmas
@@ -33,7 +33,8 @@ DETERMINED = 1e-4
 class LeftOut:
     """What becomes of the camera without one sighting.
 
-    - `centre_moves` (3,), metres in the world; `turns` (3,), radians about the camera's axes
+    - `centre_moves` (3,), metres in the world, or in the flange that carries the camera; `turns`
+      (3,), radians about the camera's axes
     - `sigmas`: the motion in stated sigmas of the pose, along the direction where it is most
     - `position_sigma`: total 1 sigma of the position without the sighting, metres
     - `agreement`: by what factor the other sightings agree better without it
@@ -68,7 +69,7 @@ def leave_one_out(fit: JointFit) -> tuple[LeftOut | None, ...]:
     if covariance is None:
         return (None,) * len(fit.says)
     pull = float(sum(say.pull for say in fit.says))
-    whole = _Whole(fit, information, covariance, pull, freedom_of(fit))
+    whole = _Whole(fit, information, covariance, pull, fit.asked.freedom)
     return tuple(_without(whole, say) for say in fit.says)
 
 
@@ -136,7 +137,7 @@ def _without(whole: _Whole, say: Say) -> LeftOut | None:
     # the fit stands where all gradients and the prior's cancel: without one of them, the step
     # against the rest is the step along its own
     twist = (others @ say.gradient)[:6]
-    misfit, world_from_camera = whole.fit.misfit, whole.fit.camera_from_world.rotation.T
+    misfit, world_from_camera = whole.fit.misfit, whole.fit.camera_from_base.rotation.T
     stated = whole.covariance[:6, :6] * misfit**2
     gain, directions = _disagreement(say, whole.covariance)
     checks = max(0, whole.freedom - directions)

@@ -68,8 +68,8 @@ def _doubts(camera: Camera, fit: JointFit) -> list[str]:
             f"all outlines are {fit.edge_bias_pixels:+.2f} px off the radius given: "
             "is the radius right?"
         )
-    answer = fit.asked.about('focal')
-    off, sigma = (answer.value, answer.sigma) if answer else (float('nan'), 1.0)
+    answer = fit.asked.about("focal")
+    off, sigma = (answer.value, answer.sigma) if answer else (float("nan"), 1.0)
     if abs(off) > max(FOCAL_SIGMAS * sigma, FOCAL_SHARE):
         doubts.append(
             f"a focal length {100 * off:+.1f} ± {100 * sigma:.1f} % longer would fit better: is "

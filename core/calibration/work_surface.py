@@ -89,7 +89,7 @@ def work_area(cell: Cell, camera: Camera, plane: ReferencePlane) -> WorkArea | N
         x, y = np.meshgrid(*grid)
         points = frame.apply(np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1))
         wide, deep = high - low
-        area = _area(camera, plane, f"where things stand, {wide:.2f} x {deep:.2f} m", points)
+        area = _area(camera, plane, f"where things stand ({wide:.2f} x {deep:.2f} m)", points)
         if area is not None:
             rim = np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
             return replace(area, corners_world=frame.apply(np.column_stack([rim, np.zeros(4)])))
@@ -97,7 +97,9 @@ def work_area(cell: Cell, camera: Camera, plane: ReferencePlane) -> WorkArea | N
     steps = (np.arange(POINTS_A_SIDE) + 0.5) / POINTS_A_SIDE
     u, v = np.meshgrid(steps * inner.width - 0.5, steps * inner.height - 0.5)
     pixels = np.stack([u.ravel(), v.ravel()], axis=1)
-    return _area(camera, plane, "all that is seen", points_on_plane_or_nan(camera, plane, pixels))
+    return _area(
+        camera, plane, "over all that is seen", points_on_plane_or_nan(camera, plane, pixels)
+    )
 
 
 def _area(camera: Camera, plane: ReferencePlane, told: str, points: Array) -> WorkArea | None:
