@@ -88,17 +88,29 @@ def ellipsoid(covariance: Array, reach: float) -> Ellipsoid:
 def reach_95(fit: JointFit) -> float:
     """How many of its stated sigmas the 95 % ellipsoid of a fit reaches.
 
-    Two statements hold at once, and the wider counts. If the outlines' own sigmas are right, the
-    square of the error is chi-squared of three degrees of freedom. If all that is known of their
-    scale is how far the sightings disagree, it is `3 F(3, freedom)` on that scale, whose tails are
-    fat where few sightings tell it. The stated covariance already carries `misfit`, which only
-    widens; so the scale is taken from the sightings themselves. In simulation the truth lies
-    inside in 95 % of the cases or more, whatever the true scale.
+    Three statements are made, and the widest counts, because none can be told from the others:
+
+    - the outlines' own sigmas are right: chi-squared of three degrees of freedom;
+    - they are wrong by one factor, known only from how far the sightings disagree: `3 F(3, f)` on
+      that scale, whose tails are fat where few sightings tell it;
+    - what exceeds them comes from the positions, which are off by as much in every direction: a
+      ball's distance is told too badly to show that, so it is spread over fewer equations, two a
+      sighting, and judged by `3 F` of those.
+
+    The stated covariance already carries `misfit`, which only widens; so the scale is taken from
+    the sightings themselves.
     """
     freedom = fit.asked.freedom
     found = sum(say.pull for say in fit.says) / freedom
-    on_first_scale = max(CHI_SQUARED_95, found * three_f_quantile(freedom))
-    return math.sqrt(on_first_scale) / fit.misfit
+    # the edge bias is told by the balls' sizes, not across the line of sight
+    across = max(1, 2 * len(fit.says) - (len(fit.unknowns) - 1))
+    excess = max(0.0, found - 1.0) * max(1.0, freedom / across)
+    squares = (
+        CHI_SQUARED_95,
+        found * three_f_quantile(freedom),
+        excess * three_f_quantile(across),
+    )
+    return math.sqrt(max(squares)) / fit.misfit
 
 
 @cache

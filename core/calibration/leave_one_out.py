@@ -69,7 +69,8 @@ def leave_one_out(fit: JointFit) -> tuple[LeftOut | None, ...]:
     if covariance is None:
         return (None,) * len(fit.says)
     pull = float(sum(say.pull for say in fit.says))
-    whole = _Whole(fit, information, covariance, pull, fit.asked.freedom)
+    gradient = fit.asked.gradient[: len(fit.unknowns)]
+    whole = _Whole(fit, information, gradient, covariance, pull, fit.asked.freedom)
     return tuple(_without(whole, say) for say in fit.says)
 
 
@@ -121,10 +122,11 @@ def _moved(change: LeftOut) -> str:
 
 @dataclass(frozen=True, eq=False)
 class _Whole:
-    """The fit of all sightings: its normal matrix, the inverse, and how well they agree."""
+    """The fit of all sightings: its normal equations, their inverse, and how well they agree."""
 
     fit: JointFit
     information: Array
+    gradient: Array
     covariance: Array
     pull: float
     freedom: int
@@ -134,9 +136,9 @@ def _without(whole: _Whole, say: Say) -> LeftOut | None:
     others = inverse_information(whole.information - say.information)
     if others is None:
         return None
-    # the fit stands where all gradients and the prior's cancel: without one of them, the step
-    # against the rest is the step along its own
-    twist = (others @ say.gradient)[:6]
+    # a fit with Tukey's weights stands a little beside where its gradients cancel: what counts is
+    # how far the place where they do moves
+    twist = (whole.covariance @ whole.gradient - others @ (whole.gradient - say.gradient))[:6]
     misfit, world_from_camera = whole.fit.misfit, whole.fit.camera_from_base.rotation.T
     stated = whole.covariance[:6, :6] * misfit**2
     gain, directions = _disagreement(say, whole.covariance)

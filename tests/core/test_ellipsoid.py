@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -19,6 +20,7 @@ from monocell.core.calibration.ellipsoid import (
     three_f_tail,
 )
 from monocell.core.calibration.joint_pose import fit_pose
+from monocell.core.calibration.observation import Place
 
 
 # Fisher's F(3, n) at 95 %, from printed tables
@@ -62,13 +64,36 @@ def test_the_truth_lies_inside_whatever_the_scale_of_the_noise_is(freedom, scale
         scale**2 * rng.chisquare(3, 3000), scale**2 * rng.chisquare(freedom, 3000), strict=True
     ):
         misfit = np.sqrt(max(1.0, pull / freedom))
+        balls = (freedom + 7) // 3
         fit = SimpleNamespace(
-            asked=SimpleNamespace(freedom=freedom), says=[SimpleNamespace(pull=pull)], misfit=misfit
+            asked=SimpleNamespace(freedom=freedom),
+            says=[SimpleNamespace(pull=pull / balls)] * balls,
+            unknowns=range(7),
+            misfit=misfit,
         )
         inside += square <= (reach_95(fit) * misfit) ** 2
     assert inside / 3000 > 0.94
-    if scale == 4:
-        assert inside / 3000 < 0.96
+
+
+@pytest.mark.parametrize(("balls", "least"), [(4, 0.8), (6, 0.85)])
+def test_the_truth_lies_inside_where_the_robot_is_off_by_more_than_the_outlines(balls, least):
+    """A robot's error moves whole balls, which the outlines' own noise knows nothing of."""
+    rng = np.random.default_rng(7)
+    inside = alone = 0
+    for _ in range(80):
+        observations = [
+            replace(o, place=Place(o.place.offset + rng.normal(0, 5e-4, 3)))
+            for o in exact_outlines(PLACES[:balls], OutlineNoise(0.2), rng)
+        ]
+        fit = fit_pose(observations, POSE)
+        camera = Camera(None, fit.camera_from_base, fit.covariance)
+        error = pose_error(camera, fit)
+        off = error.position.directions @ (camera.centre_world - POSE.inverse().translation)
+        far = np.linalg.norm(off / error.position.semi_axes)
+        inside, alone = inside + (far < 1), alone + (far * error.reach < np.sqrt(7.8147))
+    assert inside / 80 > least
+    # what a plain chi-squared ellipsoid would hold
+    assert alone < inside
 
 
 def test_the_error_of_a_fit_is_told_along_the_world_and_about_the_camera():
