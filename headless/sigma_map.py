@@ -52,9 +52,6 @@ def drawn_map(cell: Cell, calibration: Calibration, surface: SurfaceAccuracy) ->
             balls.append(BallOutline(pixels, STATUS_COLORS[report.status]))
     frame = surface.area.frame_pixels(camera)
     where = surface.area.told.split(" (")[0] + (" (framed)" if frame is not None else "")
-    caption = (
-        f"1 sigma of a point on {surface.plane.name}, from the camera's pose: "
-        f"{1e3 * surface.at_work:.2f} mm {where}"
-    )
+    caption = f"1 sigma of a point on {surface.plane.name}: {1e3 * surface.at_work:.2f} mm {where}"
     field = sigma_field(camera, surface.plane)
     return draw_sigma_map(photograph, camera, field, caption, balls, frame)

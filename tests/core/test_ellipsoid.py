@@ -51,7 +51,10 @@ def test_the_ends_of_the_axes_lie_as_many_sigmas_away_as_it_reaches(seed, reach)
     assert (np.diff(shape.semi_axes) <= 0).all()
     np.testing.assert_allclose(shape.directions @ shape.directions.T, np.eye(3), atol=1e-9)
     along = np.einsum("ki,ij,kj->k", shape.directions, covariance, shape.directions)
-    np.testing.assert_allclose(reach * np.sqrt(along), shape.semi_axes, rtol=1e-4, atol=1e-12)
+    # a nearly flat ellipsoid keeps half the digits of its longest axis
+    digits = 1e-6 * shape.semi_axes[0]
+    lengths = reach * np.sqrt(np.maximum(along, 0))
+    np.testing.assert_allclose(lengths, shape.semi_axes, rtol=1e-4, atol=digits)
 
 
 @pytest.mark.parametrize("freedom", [2, 5, 8, 17, 53])
