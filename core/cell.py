@@ -9,9 +9,10 @@ from pathlib import Path
 
 from .camera import Camera
 from .errors import InvalidValue
+from .mount import Mount
 from .primitives import Primitive
 from .reference import ReferenceLine, ReferencePlane
-from .sighting import SphereSighting
+from .sighting import Sighting
 from .sketch import Sketch
 
 Reference = ReferencePlane | ReferenceLine
@@ -21,22 +22,25 @@ Reference = ReferencePlane | ReferenceLine
 class Cell:
     """One cell document. Picture names are relative to `folder`, the document's place.
 
-    `objects` are solved; `sketches` are picked only, and become objects when they are solved.
+    `objects` are solved; `sketches` are picked only, and become objects when they are solved. A
+    camera that rides on the robot has a `mount`; its `camera` stands as it stood for `picture`.
 
-    Raises InvalidValue when two references or two objects share a name, or an object stands on a
-    reference that is not there.
+    Raises InvalidValue when two references or two objects share a name, an object stands on a
+    reference that is not there, or a sighting does not tell what its kind of camera needs.
     """
 
     camera: Camera
     picture: str | None = None
-    sightings: tuple[SphereSighting, ...] = ()
+    sightings: tuple[Sighting, ...] = ()
     references: tuple[Reference, ...] = ()
     objects: tuple[Primitive, ...] = ()
     sketches: tuple[Sketch, ...] = ()
     folder: Path = Path()
+    mount: Mount | None = None
 
     def __post_init__(self) -> None:
         check_names(self.references, self.things)
+        check_sightings(self.sightings, self.mount)
 
     @property
     def things(self) -> tuple[Primitive | Sketch, ...]:
@@ -49,6 +53,10 @@ class Cell:
 
     def with_camera(self, camera: Camera) -> Cell:
         return replace(self, camera=camera)
+
+    def with_mount(self, mount: Mount) -> Cell:
+        """The cell with its camera on that mount, standing where it stood for `picture`."""
+        return replace(self, mount=mount, camera=mount.placed(self.camera))
 
     def with_objects(self, objects: Iterable[Primitive]) -> Cell:
         return replace(self, objects=tuple(objects))
@@ -74,6 +82,19 @@ def check_names(references: Sequence[Reference], things: Sequence[Primitive | Sk
             listed = ", ".join(sorted(known)) or "none at all"
             raise InvalidValue(
                 f"objects[{i}].on: no reference is called {thing.on!r}; there is {listed}"
+            )
+
+
+def check_sightings(sightings: Sequence[Sighting], mount: Mount | None) -> None:
+    """Raises InvalidValue for a sighting that tells too little, or the same thing twice."""
+    for i, sighting in enumerate(sightings):
+        where = f"sightings[{i}].world_from_flange"
+        if mount is not None and sighting.world_from_flange is None:
+            raise InvalidValue(f"{where}: is missing; the camera rides on the flange")
+        if mount is None and None not in (sighting.world_from_flange, sighting.center_world):
+            raise InvalidValue(
+                f"{where}: the camera is fixed, and center tells the place already; give one of "
+                "the two, or the camera's mount"
             )
 
 

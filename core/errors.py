@@ -38,6 +38,14 @@ class DegeneratePositions(MonocellError):
     """The ball's positions lie on a line or in one place, which leaves the pose undetermined."""
 
 
+class AmbiguousPose(MonocellError):
+    """Several poses fit the sightings equally well."""
+
+
+class NotObservable(MonocellError):
+    """Something is to be refined that these sightings can't tell well enough."""
+
+
 class PickError(MonocellError):
     """A picked pixel can't mean what it was picked for (above the horizon, behind the camera)."""
 

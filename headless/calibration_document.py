@@ -14,6 +14,7 @@ from ..core.calibration.leave_one_out import LeftOut
 from ..core.calibration.sighting_report import SightingReport
 from ..core.document.entries import camera_entry, pose_entry
 from .calibration_report import Report
+from .calibration_unknowns import unknowns_document
 
 
 def document(report: Report) -> dict[str, Any]:
@@ -35,10 +36,11 @@ def document(report: Report) -> dict[str, Any]:
         "edge_bias_pixels": calibration.edge_bias_pixels,
         "edge_bias_sigma_pixels": calibration.edge_bias_sigma_pixels,
         "misfit": calibration.misfit,
+        **unknowns_document(calibration),
         "positions": _positions(report),
         "candidates": [
             {
-                "camera_from_world": pose_entry(candidate.camera_from_world),
+                "camera_from_base": pose_entry(candidate.camera_from_base),
                 "off_pixels": candidate.off_pixels,
             }
             for candidate in calibration.candidates

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,6 +17,7 @@ from ..core.calibration.calibrate import Calibration
 from ..core.calibration.ellipsoid import Ellipsoid, PoseError
 from ..core.calibration.leave_one_out import LeftOut
 from ..core.calibration.sighting_report import SightingReport
+from .calibration_unknowns import unknowns_told
 from .told import point_told, table
 
 WIDTH, INDENT, LONGEST_NAME = 100, 11, 30
@@ -62,13 +64,16 @@ def _sections(report: Report) -> list[tuple[str, list[str]]]:
     sections.append(("positions", _geometry(report)))
     bias = f"{calibration.edge_bias_pixels:+.3f} ± {calibration.edge_bias_sigma_pixels:.3f} px"
     sections.append(("outlines", [f"{calibration.rms_pixels:.2f} px rms, edge bias {bias}"]))
+    for line in unknowns_told(calibration):
+        name, said = line.split(maxsplit=1)
+        sections.append((name, textwrap.wrap(said, WIDTH - INDENT)))
     return sections
 
 
 def _baseline(calibration: Calibration) -> list[str]:
     lines = [f"unknown: the baseline {calibration.method} states none"]
     for candidate in calibration.candidates:
-        centre = candidate.camera_from_world.inverse().translation
+        centre = candidate.camera_from_base.inverse().translation
         lines.append(f"candidate {point_told(centre)}, balls {candidate.off_pixels:.2f} px off")
     return [*lines, "what follows is of the joint fit that the baseline is held against"]
 
@@ -132,7 +137,7 @@ def _tell_sightings(report: Report) -> None:
     header = ("sighting", "status", "rms px", "off px", "off mm", "moves mm", "turns deg", "sigmas")
     print(table(header, rows))
     if len(listed) < len(sightings):
-        print(f"and {len(sightings) - len(listed)} more, all used, that move less; --json has all")
+        print(_unlisted(sightings, listed))
     print("moves, turns, sigmas: what leaving the sighting out does to the camera")
     for i in listed:
         if sightings[i].reason:
@@ -141,16 +146,19 @@ def _tell_sightings(report: Report) -> None:
 
 
 def _listed(sightings: Sequence[SightingReport], without: Sequence[LeftOut | None]) -> list[int]:
-    """Those a person should look at first, in the document's order."""
-    order = sorted(
-        range(len(sightings)),
-        key=lambda i: (
-            ("rejected", "doubtful", "used").index(sightings[i].status),
-            -_sigmas(without[i]),
-        ),
-    )
-    odd = sum(one.status != "used" for one in sightings)
-    return sorted(order[: max(MOST_LISTED, odd)])
+    """Those a person should look at first, at least half of them used, in the document's order."""
+    odd = [i for i, one in enumerate(sightings) if one.status != "used"]
+    used = [i for i, one in enumerate(sightings) if one.status == "used"]
+    used.sort(key=lambda i: -_sigmas(without[i]))
+    few = max(MOST_LISTED // 2, MOST_LISTED - len(used))
+    return sorted([*odd[:few], *used[: MOST_LISTED - len(odd[:few])]])
+
+
+def _unlisted(sightings: Sequence[SightingReport], listed: Sequence[int]) -> str:
+    """How many more there are of each status."""
+    rest = Counter(one.status for i, one in enumerate(sightings) if i not in set(listed))
+    counted = ", ".join(f"{count} {status}" for status, count in rest.most_common())
+    return f"and {rest.total()} more: {counted}; --json has all"
 
 
 def _sigmas(change: LeftOut | None) -> float:

@@ -17,7 +17,7 @@ from .ring_search import NARROW, WIDE, Pyramid, RoughSphere, Span, circle_of, se
 
 Window = tuple[float, float, float, float]
 
-SEARCHED, SEARCHED_IN_WINDOW, NARROWED, MEASURED = 24, 8, 5, 4
+SEARCHED, SEARCHED_IN_WINDOW, MEASURED = 24, 8, 4
 # an outline this clear ends the search: what is left had less agreement already
 CLEAR_EVIDENCE, CLEAR_COVERAGE = 8.0, 0.45
 # in a window the strongest circles are tried before all are compared
@@ -31,17 +31,22 @@ CROP_SHARE, CROP_PIXELS = 1.25, 14.0
 
 
 def find_spheres(
-    picture: Picture, intrinsics: Intrinsics, radius: float, window: Window | None = None
+    picture: Picture,
+    intrinsics: Intrinsics,
+    radius: float,
+    window: Window | None = None,
+    most: int = MEASURED,
 ) -> tuple[SphereOutline, ...]:
     """Balls of `radius` metres in a picture (H, W, 3) as `read_picture` gives it, the best first.
 
     `window` (x, y, width, height) in pixels limits where the ball's middle may be. Overlapping
-    answers are told apart by how much of the outline has its edge: the best of each place is kept.
+    answers are told apart by how much of the outline has its edge: the best of each place is kept,
+    and `most` places are measured.
 
     Raises PictureError when the picture is not of the camera's size, SphereNotFound when there is
     no ball that can be believed, and SphereCut when the best leaves the picture.
     """
-    return _found(picture, intrinsics, radius, window, until_clear=False)
+    return _found(picture, intrinsics, radius, window, until_clear=False, measured=most)
 
 
 def _found(
@@ -51,6 +56,7 @@ def _found(
     window: Window | None,
     *,
     until_clear: bool,
+    measured: int = MEASURED,
 ) -> tuple[SphereOutline, ...]:
     positive(radius, "radius")
     check_size(picture, intrinsics, "the picture")
@@ -67,7 +73,7 @@ def _found(
         if clear is not None:
             return (clear,)
     most = SEARCHED if window is None else SEARCHED_IN_WINDOW
-    roughs = _roughs(pyramid, intrinsics, circles[:most], radius)
+    roughs = _roughs(pyramid, intrinsics, circles[:most], radius, measured)
     return _measured(picture, intrinsics, radius, roughs, _where(window), until_clear)
 
 
@@ -127,12 +133,12 @@ def _is_clear(outline: SphereOutline) -> bool:
 
 
 def _roughs(
-    pyramid: Pyramid, intrinsics: Intrinsics, circles: list[Circle], radius: float
+    pyramid: Pyramid, intrinsics: Intrinsics, circles: list[Circle], radius: float, most: int
 ) -> list[RoughSphere]:
     """The rough spheres that enough edges agree on, each place once, the best first."""
     wide = _searched(pyramid, intrinsics, circles, radius, WIDE)
-    circles = [circle_of(intrinsics, rough.centre_camera, radius) for rough in wide[:NARROWED]]
-    return _searched(pyramid, intrinsics, circles, radius, NARROW)[:MEASURED]
+    circles = [circle_of(intrinsics, rough.centre_camera, radius) for rough in wide[: most + 1]]
+    return _searched(pyramid, intrinsics, circles, radius, NARROW)[:most]
 
 
 def _searched(

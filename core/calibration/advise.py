@@ -179,7 +179,10 @@ def _predicted(
 def _rows(camera: Camera, fit: JointFit, observation: OutlineObservation) -> Array:
     """Derivatives (N, P) of an outline's residuals by the fit's unknowns."""
     refined = tuple(one.name for one in fit.refined)
-    measured, unknowns = Measured.of([observation]), Unknowns.of([observation], refined)
+    measured, unknowns = (
+        Measured.of([observation]),
+        Unknowns.of_places([observation.place], refined),
+    )
     state = State(camera.pose, np.zeros((0, 3)))
     columns = measured.columns(camera.pose.apply(unknowns.places_base(state)), state)
     return unknowns.rows(columns, measured.owner, state)

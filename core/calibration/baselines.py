@@ -11,32 +11,50 @@ import cv2
 import numpy as np
 
 from ..arrays import Array
-from ..errors import DegeneratePositions, NotConverged
+from ..errors import DegeneratePositions, InvalidValue, NotConverged
 from ..pose import Pose
 from .frames import pose_from_triads
-from .pose_search import SeenBall, off_pixels
+from .seen import Seen
 from .three_depths import depths_of_three
+
+MOST_COMPARED = 40
 
 
 @dataclass(frozen=True, eq=False)
 class PoseCandidate:
-    """A pose, and the root mean square of how far it puts the balls from where they were found."""
+    """A pose, and the root mean square of how far it puts the targets from where they were found.
 
-    camera_from_world: Pose
+    `camera_from_base` is from the world, or from the flange that a camera is mounted on.
+    """
+
+    camera_from_base: Pose
     off_pixels: float
 
 
-def baseline_poses(method: str, balls: Sequence[SeenBall]) -> tuple[PoseCandidate, ...]:
+def baseline_poses(method: str, balls: Sequence[Seen]) -> tuple[PoseCandidate, ...]:
     """The candidates of a baseline, the closest first: up to four for `p3p`, one for the others.
 
     - `frames`: triads on the three centres of the widest triangle (paper eq. 1-8)
     - `p3p`: depths from the distances of the same three (eq. 9-15), from their directions alone
     - `pnp`: SQPnP (Terzakis and Lourakis 2020) on the directions of all centres
 
-    Raises NotConverged when a method has no answer.
+    Raises NotConverged when a method has no answer, InvalidValue for targets whose place is not
+    known, and for points where a method needs balls.
     """
-    world = np.array([ball.centre_world for ball in balls])
-    camera = np.array([ball.outline.centre_camera for ball in balls])
+    if any(ball.place.offset is None for ball in balls):
+        raise InvalidValue(
+            f"{method}: a baseline needs the targets' places, and an offset is unknown; give "
+            "center, or use the method joint"
+        )
+    if method == "frames":
+        balls = [ball for ball in balls if ball.is_ball]
+        if len(balls) < 3:
+            raise InvalidValue(
+                f"frames: the paper's frames need three balls, there are {len(balls)}; points have "
+                "no depth"
+            )
+    world = np.array([ball.place.in_base() for ball in balls])
+    camera = np.array([ball.hint.centre_camera for ball in balls])
     poses = {"frames": _frames, "p3p": _p3p, "pnp": _pnp}[method](world, camera)
     candidates = [PoseCandidate(pose, _off(balls, pose)) for pose in poses]
     if not candidates:
@@ -71,11 +89,14 @@ def _pnp(world: Array, camera: Array) -> list[Pose]:
 
 def _widest(world: Array) -> list[int]:
     """The three points that span the widest triangle."""
-    triples = list(combinations(range(len(world)), 3))
+    # of many positions a part of them spreads as wide
+    chosen = np.linspace(0, len(world) - 1, min(len(world), MOST_COMPARED)).round().astype(int)
+    triples = [tuple(chosen[list(t)]) for t in combinations(range(len(chosen)), 3)]
     a, b, c = (world[[t[i] for t in triples]] for i in range(3))
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return list(triples[int(np.argmax(areas))])
+    return [int(i) for i in triples[int(np.argmax(areas))]]
 
 
-def _off(balls: Sequence[SeenBall], pose: Pose) -> float:
-    return float(np.sqrt(np.mean([off_pixels(ball, pose) ** 2 for ball in balls])))
+def _off(balls: Sequence[Seen], pose: Pose) -> float:
+    offs = [ball.off_pixels(pose.apply(ball.place.in_base())) for ball in balls]
+    return float(np.sqrt(np.mean(np.square(offs))))

@@ -37,8 +37,7 @@ def say_of(held: Tangency, rows: Array, left: Array, root: Array, allowed: Array
     their weights.
     """
     whitened = np.column_stack([held.by_centre, rows, left]) * root[:, None]
-    gram: Array = whitened.T @ whitened
-    reduced, pulls = marginalised(gram[None], allowed[None])
+    reduced, pulls = marginalised(np.array([whitened.T @ whitened]), allowed[None])
     return Say(reduced[0, 3:-1, 3:-1], reduced[0, 3:-1, -1], float(pulls[0]))
 
 

@@ -80,7 +80,8 @@ def fit_pose(
 
     Raises DegeneratePositions when the sightings leave a direction of the pose undetermined.
     """
-    measured, unknowns = Measured.of(observations), Unknowns.of(observations, refine)
+    measured = Measured.of(observations)
+    unknowns = Unknowns.of_places([o.place for o in observations], refine)
     state = State(start, np.zeros((0, 3)) if offsets is None else np.asarray(offsets, dtype=float))
     weights = np.ones(len(measured.sigma_pixels))
     for _ in range(REWEIGHTINGS):

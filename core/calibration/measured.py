@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, Mask
+from ..arrays import Array
 from ..ball.sphere import OutlineRays, tangency
 from ..intrinsics import Intrinsics
 from .observation import Observation, OutlineObservation, PointObservation
@@ -20,9 +20,12 @@ from .unknowns import SHARED, Columns, State
 class Measured:
     """The pixels of all outlines, and after them those of all points, which make two rows each.
 
-    `owner` (N,) is each row's sighting, `rows` (S,) where each sighting's rows are; `radii` (M,)
-    and `sigma_pixels` (N,) stand for each row of an outline and for each row. One set of arrays for
-    all sightings costs a handful of calls instead of one a sighting.
+    - `owner` (N,): each row's sighting; `rows` (S,): where each sighting's rows are
+    - `radii` (M,) of each row of an outline, `sigma_pixels` (N,) of each row
+    - `by_lens` (., 2, 2): by how much a longer lens, and one with more radial distortion, would
+      show each pixel farther out
+
+    One set of arrays for all sightings costs a handful of calls instead of one a sighting.
     """
 
     outlines: OutlineRays
@@ -31,8 +34,8 @@ class Measured:
     sigma_pixels: Array
     owner: NDArray[np.intp]
     rows: tuple[slice, ...]
-    is_ball: Mask
     intrinsics: Intrinsics | None
+    by_lens: Array
 
     @staticmethod
     def of(observations: Sequence[Observation]) -> Measured:
@@ -45,15 +48,18 @@ class Measured:
         for i, end, length in zip(order, ends, lengths, strict=True):
             rows[i] = slice(end - length, end)
         sigmas = [o.sigma_pixels for _, o in balls]
+        intrinsics = observations[0].intrinsics
+        outlines = _joined([o.outline for _, o in balls])
+        clicked = _joined([o.outline for _, o in points])
         return Measured(
-            _joined([o.outline for _, o in balls]),
-            _joined([OutlineRays.of(o.intrinsics, o.pixel[None]) for _, o in points]),
+            outlines,
+            clicked,
             np.repeat([o.radius for _, o in balls], lengths[: len(balls)]),
             np.concatenate([*sigmas, np.repeat([o.sigma_pixels for _, o in points], 2)]),
             np.repeat(order, lengths),
             tuple(rows),
-            np.array([isinstance(o, OutlineObservation) for o in observations]),
-            observations[0].intrinsics,
+            intrinsics,
+            _by_lens(np.concatenate([outlines.pixels, clicked.pixels]), intrinsics),
         )
 
     def columns(self, centres_camera: Array, state: State) -> Columns:
@@ -81,7 +87,7 @@ class Measured:
         shared = np.empty((len(radii), len(SHARED)))
         shared[:, 0] = -1
         shared[:, 1] = held.by_radius * radii
-        shared[:, 2:] = -np.einsum("nci,ni->nc", self._farther(self.outlines.pixels), held.normals)
+        shared[:, 2:] = -np.einsum("nci,ni->nc", self.by_lens[: len(radii)], held.normals)
         return Columns(held.residual_pixels - state.edge_bias_pixels, held.by_centre, shared)
 
     def _of_points(self, centres: Array) -> Columns:
@@ -95,19 +101,19 @@ class Measured:
         across = np.eye(3) - axes[:, :, None] * axes[:, None, :]
         by_centre = -(pixel_by_ray @ across) / distance[:, None, None]
         shared = np.zeros((len(centres), 2, len(SHARED)))
-        shared[:, :, 2:] = -np.swapaxes(self._farther(self.points.pixels), 1, 2)
+        shared[:, :, 2:] = -np.swapaxes(self.by_lens[len(self.radii) :], 1, 2)
         return Columns(
             residual.ravel(), by_centre.reshape(-1, 3), shared.reshape(-1, shared.shape[2])
         )
 
-    def _farther(self, pixels: Array) -> Array:
-        """Where a longer lens, and one with more radial distortion, show a pixel: (N, 2, 2)."""
-        if self.intrinsics is None:
-            return np.zeros((len(pixels), 2, 2))
-        lens = self.intrinsics
-        from_middle = pixels - [lens.cx, lens.cy]
-        squared = ((from_middle / [lens.fx, lens.fy]) ** 2).sum(axis=1)
-        return np.stack([from_middle, from_middle * squared[:, None]], axis=1)
+
+def _by_lens(pixels: Array, lens: Intrinsics | None) -> Array:
+    """Where a longer lens, and one with more radial distortion, show pixels: (N, 2, 2)."""
+    if lens is None:
+        return np.zeros((len(pixels), 2, 2))
+    from_middle = pixels - [lens.cx, lens.cy]
+    squared = ((from_middle / [lens.fx, lens.fy]) ** 2).sum(axis=1)
+    return np.stack([from_middle, from_middle * squared[:, None]], axis=1)
 
 
 def _longer(intrinsics: Intrinsics | None, state: State) -> Intrinsics:

@@ -53,17 +53,12 @@ class OutlineObservation:
 
 @dataclass(frozen=True, eq=False)
 class PointObservation:
-    """A point at `place`, seen at a pixel (2,), each of whose two numbers has `sigma_pixels`."""
+    """A point at `place`, seen at one pixel, `outline` (1,), whose numbers have `sigma_pixels`."""
 
-    pixel: Array
+    outline: OutlineRays
     sigma_pixels: float
     place: Place
-    intrinsics: Intrinsics
-
-    def ray(self) -> Array:
-        """The unit ray (3,) of the pixel in the camera frame."""
-        ray: Array = self.intrinsics.rays(self.pixel[None])[0]
-        return ray
+    intrinsics: Intrinsics | None = None
 
 
 Observation = OutlineObservation | PointObservation

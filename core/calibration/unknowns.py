@@ -17,12 +17,13 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..pose import Pose
 from ..rotation import hat
-from .observation import Observation, Place
+from .observation import Place
 
 Refinable = Literal["focal", "radius"]
 REFINABLE: tuple[Refinable, ...] = ("focal", "radius")
 TWIST = ("rotation x", "rotation y", "rotation z", "x", "y", "z")
 BIAS = 6
+OUT_OF_BOUNDS = 1e5
 # what moves a residual beside the target's centre: each is a column of `Columns.shared`
 SHARED = ("edge bias", "radius", "focal", "radial")
 
@@ -68,9 +69,8 @@ class Unknowns:
     translations: Array
 
     @staticmethod
-    def of(observations: Sequence[Observation], refined: Sequence[Refinable] = ()) -> Unknowns:
-        places = [o.place for o in observations]
-        targets = tuple(dict.fromkeys(p.target for p in places if p.offset is None))
+    def of_places(places: Sequence[Place], refined: Sequence[Refinable] = ()) -> Unknowns:
+        targets = offset_targets(places)
         return Unknowns(
             targets,
             tuple(name for name in REFINABLE if name in refined),
@@ -115,6 +115,9 @@ class Unknowns:
 
     def moved(self, state: State, step: Array) -> State:
         """The state after a step (P,)."""
+        # a step out of all bounds changes nothing, and is thereby refused as no better
+        if np.abs(step).max() > OUT_OF_BOUNDS:
+            return state
         more = dict(zip(self.refined, step[self.after_offsets :], strict=True))
         return replace(
             state,
@@ -174,6 +177,11 @@ class Unknowns:
         by_offset = np.zeros_like(by_centre)
         by_offset[mine] = np.einsum("ni,nij->nj", by_centre[mine], turned[owner[mine]])
         return by_offset
+
+
+def offset_targets(places: Sequence[Place]) -> tuple[str, ...]:
+    """The targets whose offset is unknown, in the order in which they come."""
+    return tuple(dict.fromkeys(p.target for p in places if p.offset is None))
 
 
 def _which(place: Place, targets: Sequence[str]) -> int:

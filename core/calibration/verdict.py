@@ -8,9 +8,10 @@ from typing import Literal
 
 import numpy as np
 
-from ..camera import Camera
+from ..intrinsics import Intrinsics
 from .joint_pose import JointFit
 from .position_geometry import PositionGeometry
+from .suspicion import suspicions
 
 Verdict = Literal["good", "weak", "failed"]
 
@@ -19,25 +20,30 @@ WEAK_MISFIT, FAILED_MISFIT = 3.0, 15.0
 # and only when it shows: a sharp picture may see a tenth of a millimetre of the robot's own error
 FAILED_OFF_PIXELS = 2.0
 WEAK_BIAS_PIXELS = 0.25
-FOCAL_SIGMAS, FOCAL_SHARE = 3.0, 0.003
 WEAK_ROTATION_DEGREES, WEAK_POSITION_SHARE = 0.2, 0.01
 
 
 def verdict_of(
-    camera: Camera,
+    lens: Intrinsics,
     fit: JointFit,
     geometry: PositionGeometry,
     sightings: Sequence[tuple[str, str]],
+    radius: float | None,
 ) -> tuple[Verdict, tuple[str, ...]]:
-    """The verdict, and what to tell the user; `sightings` are pairs of status and reason."""
+    """The verdict, and what to tell the user; `sightings` are pairs of status and reason.
+
+    `radius` is that of the balls, None where there are only points.
+    """
     rejected = [reason for status, reason in sightings if status == "rejected"]
     doubtful = [reason for status, reason in sightings if status == "doubtful"]
     kept = len(sightings) - len(rejected)
-    doubts = _doubts(camera, fit)
-    if kept < 4:
-        doubts.append("three sightings leave nothing to check them with; add a fourth")
+    doubts = _doubts(lens, fit, radius)
+    # each sighting tells a direction well: two numbers
+    unchecked = 2 * kept <= 6 + 3 * len(fit.targets)
+    if unchecked:
+        doubts.append(_nothing_to_check_with(kept))
     # any three positions have a mirror image that fits as well: against two that object, they lose
-    lonely = kept < 4 and len(rejected) >= 2
+    lonely = unchecked and len(rejected) >= 2
     if lonely:
         doubts.append(f"only {kept} of {len(sightings)} sightings agree, too few against the rest")
     warnings = (
@@ -56,30 +62,28 @@ def _counted(status: str, reasons: Sequence[str], count: int) -> tuple[str, ...]
     return (f"{len(reasons)} of {count} sightings {status}: {reasons[0]}",) if reasons else ()
 
 
-def _doubts(camera: Camera, fit: JointFit) -> list[str]:
-    doubts = []
+def _nothing_to_check_with(kept: int) -> str:
+    if kept == 3:
+        return "three sightings leave nothing to check them with; add a fourth"
+    return f"{kept} sightings leave nothing to check them with; add one more"
+
+
+def _doubts(lens: Intrinsics, fit: JointFit, radius: float | None) -> list[str]:
+    suspected = suspicions(fit, radius, lens)
+    doubts = list(suspected)
     if fit.misfit > WEAK_MISFIT:
         doubts.append(
             f"the sightings disagree {fit.misfit:.1f} times more than their outlines' noise "
             "explains: check the ball's radius, the intrinsics and the robot's positions"
         )
-    if abs(fit.edge_bias_pixels) > WEAK_BIAS_PIXELS:
+    if abs(fit.edge_bias_pixels) > WEAK_BIAS_PIXELS and not suspected:
         doubts.append(
             f"all outlines are {fit.edge_bias_pixels:+.2f} px off the radius given: "
             "is the radius right?"
         )
-    answer = fit.asked.about("focal")
-    off, sigma = (answer.value, answer.sigma) if answer else (float("nan"), 1.0)
-    if abs(off) > max(FOCAL_SIGMAS * sigma, FOCAL_SHARE):
-        doubts.append(
-            f"a focal length {100 * off:+.1f} ± {100 * sigma:.1f} % longer would fit better: is "
-            "the camera file that of this lens and zoom?"
-        )
-    rotation, position = camera.rotation_sigma(), camera.centre_sigma()
-    if rotation is None or position is None:
-        return doubts
-    degrees, metres = float(np.degrees(rotation.max())), float(position.max())
-    distance = float(np.linalg.norm(camera.pose.translation))
+    degrees = float(np.degrees(np.sqrt(np.diag(fit.covariance)[:3].max())))
+    metres = float(np.sqrt(np.linalg.eigvalsh(fit.covariance[3:, 3:])[-1]))
+    distance = float(np.median(np.linalg.norm(fit.camera_from_base.apply(fit.places_base), axis=1)))
     if degrees > WEAK_ROTATION_DEGREES or metres > WEAK_POSITION_SHARE * distance:
         doubts.append(
             f"the pose is known to {1e3 * metres:.1f} mm and {degrees:.2f} deg only; add sightings "

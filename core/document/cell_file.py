@@ -8,9 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from ..atomic import atomic_path
-from ..cell import Cell, Reference, check_names
+from ..camera import Camera
+from ..cell import Cell, Reference, check_names, check_sightings
 from ..errors import DocumentError, InvalidValue
+from ..mount import Mount
 from ..primitives import Primitive
+from ..sighting import Sighting
 from ..sketch import Sketch
 from .entries import (
     camera_entry,
@@ -18,14 +21,14 @@ from .entries import (
     object_entry,
     reference_entry,
     reference_from_entry,
-    sighting_entry,
-    sighting_from_entry,
     thing_from_entry,
 )
 from .fields import keyed, text
 from .json_text import dumped, parse_json
+from .sighting_entries import mount_entry, mount_from_entry, sighting_entry, sighting_from_entry
 
 VERSION = 1
+OPTIONAL = ("mount", "picture", "sightings", "references", "objects")
 
 
 def read_cell(path: str | Path) -> Cell:
@@ -54,9 +57,7 @@ def write_cell(cell: Cell, path: str | Path) -> None:
 
 def cell_from_document(document: Any, folder: Path) -> Cell:
     """A Cell from parsed JSON whose relative paths start at `folder`. Raises DocumentError."""
-    fields = keyed(
-        document, "", ("monocell", "camera"), ("picture", "sightings", "references", "objects")
-    )
+    fields = keyed(document, "", ("monocell", "camera"), OPTIONAL)
     version = fields.whole("monocell")
     if not 1 <= version <= VERSION:
         raise DocumentError(f"monocell: version {version} is unknown; this reads up to {VERSION}")
@@ -67,24 +68,32 @@ def cell_from_document(document: Any, folder: Path) -> Cell:
         reference_from_entry(entry, f"references[{i}]")
         for i, entry in enumerate(fields.items("references"))
     ]
-    _check_names(references, things)
+    sightings = tuple(
+        sighting_from_entry(entry, f"sightings[{i}]")
+        for i, entry in enumerate(fields.items("sightings"))
+    )
+    mount = mount_from_entry(fields.raw("mount")) if fields.has("mount") else None
+    _check(references, things, sightings, mount)
+    camera = _camera(fields.raw("camera"), folder)
     return Cell(
-        camera=_camera(fields.raw("camera"), folder),
+        camera=camera if mount is None else _mounted(camera, mount),
         picture=fields.text("picture") if fields.has("picture") else None,
-        sightings=tuple(
-            sighting_from_entry(entry, f"sightings[{i}]")
-            for i, entry in enumerate(fields.items("sightings"))
-        ),
+        sightings=sightings,
         references=tuple(references),
         objects=tuple(thing for thing in things if isinstance(thing, Primitive)),
         sketches=tuple(thing for thing in things if isinstance(thing, Sketch)),
         folder=folder,
+        mount=mount,
     )
 
 
 def document_from_cell(cell: Cell, folder: Path) -> dict[str, Any]:
     """The JSON value of a cell for a document standing in `folder`."""
-    document: dict[str, Any] = {"monocell": VERSION, "camera": camera_entry(cell.camera)}
+    # the pose of a mounted camera follows from its mount: it is written once
+    camera = cell.camera if cell.mount is None else Camera(cell.camera.intrinsics)
+    document: dict[str, Any] = {"monocell": VERSION, "camera": camera_entry(camera)}
+    if cell.mount is not None:
+        document["mount"] = mount_entry(cell.mount)
     if cell.picture is not None:
         document["picture"] = _moved(cell.picture, cell.folder, folder)
     document["sightings"] = [
@@ -96,15 +105,30 @@ def document_from_cell(cell: Cell, folder: Path) -> dict[str, Any]:
     return document
 
 
-def _check_names(references: list[Reference], things: list[Primitive | Sketch]) -> None:
+def _check(
+    references: list[Reference],
+    things: list[Primitive | Sketch],
+    sightings: tuple[Sighting, ...],
+    mount: Mount | None,
+) -> None:
     """Here things still stand in the document's order, which messages count by."""
     try:
         check_names(references, things)
+        check_sightings(sightings, mount)
     except InvalidValue as error:
         raise DocumentError(str(error)) from None
 
 
-def _camera(value: Any, folder: Path) -> Any:
+def _mounted(camera: Camera, mount: Mount) -> Camera:
+    if camera.camera_from_world is not None or camera.covariance is not None:
+        raise DocumentError(
+            "camera.camera_from_world: a camera on the flange stands elsewhere in every picture; "
+            "give mount.camera_from_flange, and mount.world_from_flange of the picture"
+        )
+    return mount.placed(camera)
+
+
+def _camera(value: Any, folder: Path) -> Camera:
     if not isinstance(value, str):
         return camera_from_entry(value)
     # imported here: the formats of others bring OpenCV and YAML, which most documents do not need

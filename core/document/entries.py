@@ -19,12 +19,21 @@ from ..intrinsics import Intrinsics
 from ..pose import Pose
 from ..primitives import Box, Cylinder, Picks, Primitive
 from ..reference import ReferenceLine, ReferencePlane
-from ..sighting import SphereSighting
 from ..sketch import KINDS, Sketch
 from .fields import Fields, items, keyed, number, shown, vector
 
 Entry = dict[str, Any]
 INTRINSICS = ("width", "height", "fx", "fy", "cx", "cy")
+
+
+@contextmanager
+def named(where: str) -> Iterator[None]:
+    """What a noun refuses is refused by the document, with the path in front."""
+    try:
+        yield
+    except InvalidValue as error:
+        told = str(error)
+        raise DocumentError(told if told.startswith(where) else f"{where}: {told}") from None
 
 
 def pose_entry(pose: Pose) -> Entry:
@@ -35,7 +44,7 @@ def pose_entry(pose: Pose) -> Entry:
 def pose_from_entry(entry: Any, where: str) -> Pose:
     """Raises DocumentError with the path of the field, as all readers here."""
     fields = keyed(entry, where, ("rotation", "translation"), ())
-    with _named(where):
+    with named(where):
         return Pose(fields.matrix("rotation", 3, 3), fields.vector("translation", 3))
 
 
@@ -58,7 +67,7 @@ def camera_from_entry(entry: Any, where: str = "camera") -> Camera:
     """The camera of a document, of a camera file of our own, or of a glTF's extras."""
     fields = keyed(entry, where, INTRINSICS, ("distortion", "camera_from_world", "covariance"))
     pose = fields.raw("camera_from_world")
-    with _named(where):
+    with named(where):
         return Camera(
             Intrinsics(
                 fields.whole("width"),
@@ -71,31 +80,6 @@ def camera_from_entry(entry: Any, where: str = "camera") -> Camera:
             ),
             None if pose is None else pose_from_entry(pose, fields.path("camera_from_world")),
             _covariance(fields, 6),
-        )
-
-
-def sighting_entry(sighting: SphereSighting) -> Entry:
-    """A ball at a known place in a picture."""
-    entry: Entry = {
-        "picture": sighting.picture,
-        "center": sighting.center_world.tolist(),
-        "radius": sighting.radius,
-    }
-    if sighting.window is not None:
-        entry["window"] = list(sighting.window)
-    return entry
-
-
-def sighting_from_entry(entry: Any, where: str) -> SphereSighting:
-    """The inverse of `sighting_entry`."""
-    fields = keyed(entry, where, ("picture", "center", "radius"), ("window",))
-    window = fields.vector("window", 4).tolist() if fields.has("window") else None
-    with _named(where):
-        return SphereSighting(
-            fields.text("picture"),
-            fields.vector("center", 3),
-            fields.number("radius"),
-            None if window is None else (window[0], window[1], window[2], window[3]),
         )
 
 
@@ -116,7 +100,7 @@ def reference_from_entry(entry: Any, where: str) -> Reference:
         raise DocumentError(f"{fields.path('kind')}: {kind!r} is neither plane nor line")
     keyed(entry, where, ("name", "kind", "point", way[kind]), ())
     noun = ReferencePlane if kind == "plane" else ReferenceLine
-    with _named(where):
+    with named(where):
         return noun(fields.text("name"), fields.vector("point", 3), fields.vector(way[kind], 3))
 
 
@@ -161,7 +145,7 @@ def thing_from_entry(entry: Any, where: str) -> Primitive | Sketch:
     if isinstance(entry, dict) and "world_from_object" not in entry:
         required: tuple[str, ...] = ("name", "kind", "on", "picks")
         fields = keyed(entry, where, required, ("known", "appearance"))
-        with _named(where):
+        with named(where):
             return Sketch(
                 fields.text("name"),
                 fields.text("kind"),
@@ -176,7 +160,7 @@ def thing_from_entry(entry: Any, where: str) -> Primitive | Sketch:
 
 def _solved(fields: Fields) -> Primitive:
     kind = KINDS[fields.text("kind")]
-    with _named(fields.where):
+    with named(fields.where):
         shared: dict[str, Any] = {
             "name": fields.text("name"),
             "world_from_object": pose_from_entry(
@@ -206,7 +190,7 @@ def _distortion(fields: Fields) -> Distortion:
     inner = keyed(fields.raw("distortion"), where, ("model",), ("coefficients",))
     listed = inner.items("coefficients")
     values = [number(v, f"{where}.coefficients[{i}]") for i, v in enumerate(listed)]
-    with _named(fields.where):
+    with named(fields.where):
         return Distortion(inner.text("model"), np.array(values))
 
 
@@ -255,13 +239,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
     return [_plain(v) for v in value] if isinstance(value, list | tuple) else value
-
-
-@contextmanager
-def _named(where: str) -> Iterator[None]:
-    """What a noun refuses is refused by the document, with the path in front."""
-    try:
-        yield
-    except InvalidValue as error:
-        told = str(error)
-        raise DocumentError(told if told.startswith(where) else f"{where}: {told}") from None

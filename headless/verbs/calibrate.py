@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.calibration.calibrate import METHODS, Calibration, calibrate_cell
+from ...core.calibration.calibrate import METHODS, REFINABLE, Calibration, calibrate_cell
 from ...core.calibration.work_surface import surface_of
 from ...core.cell import Cell
 from ...core.document.cell_file import read_cell, write_cell
@@ -32,6 +32,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "paper's triads), p3p (its depths from distances, every candidate), pnp (SQPnP)",
     )
     parser.add_argument(
+        "--refine",
+        action="append",
+        default=[],
+        choices=REFINABLE,
+        help="solve for the focal length or the ball's radius too (may be given twice); refused "
+        "where the sightings can't tell it",
+    )
+    parser.add_argument(
         "--surface",
         metavar="NAME|z=...",
         help="the plane whose points' error is told: a reference or a height; the first plane of "
@@ -40,6 +48,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--sigma-map", type=Path, metavar="OUT.png", help="draw that error over the picture"
     )
+    _add_advice_arguments(parser)
+    parser.add_argument("--json", action="store_true", help="print JSON, which has all numbers")
+
+
+def _add_advice_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--advise", action="store_true", help="tell where to hold the ball next, and what it gains"
     )
@@ -57,7 +70,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar=("X0", "Y0", "Z0", "X1", "Y1", "Z1"),
         help="choose from a box in the world; without it, from one round the positions used",
     )
-    parser.add_argument("--json", action="store_true", help="print JSON, which has all numbers")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -65,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
     given = read_cell(args.cell)
     _check(args, given)
     candidates = _candidates(args)
-    cell, calibration = calibrate_cell(given, args.method)
+    cell, calibration = calibrate_cell(given, args.method, args.refine)
     failed = calibration.verdict == "failed"
     report = _report(args, cell, calibration, candidates)
     if not failed:

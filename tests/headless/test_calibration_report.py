@@ -196,8 +196,11 @@ def test_many_sightings_are_not_all_listed(run, job):
 
     code, out, _ = run("calibrate", edited(job, many))
     assert code == 0
-    assert "and 8 more, all used, that move less; --json has all" in out
-    assert sum("pose_" in line for line in out.splitlines()) == 12
+    # the sightings repeated count once
+    assert "and 8 more: 8 rejected; --json has all" in out
+    rows = [line.split() for line in out.splitlines() if line.startswith("pose_")]
+    assert sum(row[1] == "used" for row in rows) == 5
+    assert sum(row[1] == "rejected" for row in rows) == 7
 
 
 @pytest.mark.parametrize(
