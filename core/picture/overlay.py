@@ -65,12 +65,12 @@ def draw_overlay(
     colors = [PALETTE[i % len(PALETTE)] for i in range(len(frames))]
     rings = [(Polyline(p, True), ball.color) for ball in balls for p in _ring(ball.pixels)]
     lines = [(line, color) for f, color in zip(frames, colors, strict=True) for line in f]
-    _blend(picture, [c for c in lines if not c[0].visible], max(1, width // 2), HIDDEN_OPACITY)
+    blend_lines(picture, [c for c in lines if not c[0].visible], max(1, width // 2), HIDDEN_OPACITY)
     seen = [c for c in lines if c[0].visible] + rings
-    _blend(
+    blend_lines(
         picture, [(line, HALO) for line, _ in seen], width + 2 * max(1, width // 2), HALO_OPACITY
     )
-    _blend(picture, seen, width, 1.0)
+    blend_lines(picture, seen, width, 1.0)
     named = list(zip(objects, frames, colors, strict=True))
     capital = max(SMALLEST_CAPITAL, diagonal / DIAGONAL_PER_CAPITAL)
     _draw_labels(picture, named, [ring for ring, _ in rings], capital)
@@ -92,6 +92,23 @@ def caption(thing: Primitive) -> str:
     return ", ".join(f"{name} {text}" for name, text in pairs) + " mm"
 
 
+def blend_lines(
+    picture: Picture, lines: Sequence[tuple[Polyline, Color]], thickness: int, opacity: float
+) -> None:
+    """Draw the lines into the picture, in place."""
+    drawn = picture if opacity == 1.0 else picture.copy()
+    for line, color in lines:
+        places = np.round(line.pixels * (1 << SHIFT)).astype(np.int32)
+        cv2.polylines(drawn, [places], False, color, thickness, cv2.LINE_AA, SHIFT)
+    if opacity < 1.0:
+        cv2.addWeighted(drawn, opacity, picture, 1.0 - opacity, 0.0, dst=picture)
+
+
+def plain_name(name: str) -> str:
+    """The name in letters that OpenCV's font has."""
+    return unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode() or "object"
+
+
 def _millimetres(size: float, sigma: float | None) -> str:
     # a size that was given has no error of its own to show
     if sigma is None or sigma == 0:
@@ -102,18 +119,6 @@ def _millimetres(size: float, sigma: float | None) -> str:
 
 def _ring(pixels: Array) -> list[Array]:
     return finite_parts(np.concatenate([pixels, pixels[:1]]))
-
-
-def _blend(
-    picture: Picture, lines: Sequence[tuple[Polyline, Color]], thickness: int, opacity: float
-) -> None:
-    """Draw the lines into the picture, in place."""
-    drawn = picture if opacity == 1.0 else picture.copy()
-    for line, color in lines:
-        places = np.round(line.pixels * (1 << SHIFT)).astype(np.int32)
-        cv2.polylines(drawn, [places], False, color, thickness, cv2.LINE_AA, SHIFT)
-    if opacity < 1.0:
-        cv2.addWeighted(drawn, opacity, picture, 1.0 - opacity, 0.0, dst=picture)
 
 
 def _draw_labels(
@@ -130,7 +135,7 @@ def _draw_labels(
     for (thing, _, color), box in zip(named, bounds, strict=True):
         if box is None:
             continue
-        label = Label((_plain(thing.name), caption(thing)), color, capital)
+        label = Label((plain_name(thing.name), caption(thing)), color, capital)
         others = [other for other in taken if other is not box]
         place = place_label(label, box, others, (width, height))
         label.draw(picture, round(place[0]), round(place[1]))
@@ -144,11 +149,6 @@ def _bounds(frame: Sequence[Polyline], width: int, height: int) -> Array | None:
     if not inside.any():
         return None
     return np.concatenate([pixels[inside].min(axis=0), pixels[inside].max(axis=0)])
-
-
-def _plain(name: str) -> str:
-    """The name in letters that OpenCV's font has."""
-    return unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode() or "object"
 
 
 def _refuse_other_pictures(picture: Picture, camera: Camera) -> None:

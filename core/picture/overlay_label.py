@@ -81,6 +81,28 @@ class Label:
         return max(1, round(0.14 * SHRINK * self.capital))
 
 
+def write_text(
+    picture: Picture, line: str, place: tuple[float, float], capital: float, ink: Color = INK
+) -> None:
+    """One line without a label's paper, its capitals' left top corner at `place`, in place."""
+    scale, rim = SHRINK * capital / CAPITAL, round(capital)
+    width, height = round(text_width(line, capital)) + 2 * rim, 3 * rim
+    large: Picture = np.zeros((height * SHRINK, width * SHRINK), np.uint8)
+    base = round((rim + capital) * SHRINK)
+    _write(large, line, rim * SHRINK, base, scale, max(1, round(0.14 * SHRINK * capital)))
+    text = cv2.resize(large, (width, height), interpolation=cv2.INTER_AREA)
+    left, top = round(place[0]) - rim, round(place[1]) - rim
+    rows, columns = slice(max(top, 0), max(top + height, 0)), slice(max(left, 0), left + width)
+    area = picture[rows, columns].astype(float)
+    seen = text[max(-top, 0) :, max(-left, 0) :][: area.shape[0], : area.shape[1], None] / 255.0
+    picture[rows, columns] = np.round(area + seen * (np.array(ink) - area)).astype(np.uint8)
+
+
+def text_width(line: str, capital: float) -> float:
+    """How many pixels wide a line is."""
+    return _width(line, SHRINK * capital / CAPITAL) / SHRINK
+
+
 def place_label(
     label: Label, around: Array, taken: Sequence[Array], picture_size: tuple[int, int]
 ) -> Array:

@@ -5,16 +5,19 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from ...core.arrays import Array
 from ...core.calibration.calibrate import METHODS, REFINABLE, Calibration, calibrate_cell
+from ...core.calibration.work_surface import surface_of
+from ...core.cell import Cell
 from ...core.document.cell_file import read_cell, write_cell
-from ...core.document.entries import camera_entry, pose_entry
-from ..calibration_unknowns import unknowns_document, unknowns_told
+from ...core.errors import InvalidValue
+from ..calibration_document import document
+from ..calibration_report import Report, tell
 from ..cli import DONE, NOT_TRUSTED
-from ..told import millimetres, point_told, print_json, table, warn
+from ..told import print_json, warn
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,20 +39,56 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="solve for the focal length or the ball's radius too (may be given twice); refused "
         "where the sightings can't tell it",
     )
-    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument(
+        "--surface",
+        metavar="NAME|z=...",
+        help="the plane whose points' error is told: a reference or a height; the first plane of "
+        "the cell without it, else z=0",
+    )
+    parser.add_argument(
+        "--sigma-map", type=Path, metavar="OUT.png", help="draw that error over the picture"
+    )
+    _add_advice_arguments(parser)
+    parser.add_argument("--json", action="store_true", help="print JSON, which has all numbers")
+
+
+def _add_advice_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--advise", action="store_true", help="tell where to hold the ball next, and what it gains"
+    )
+    among = parser.add_mutually_exclusive_group()
+    among.add_argument(
+        "--advise-from",
+        type=Path,
+        metavar="FILE",
+        help="choose from the positions of a .json or .csv file",
+    )
+    among.add_argument(
+        "--advise-box",
+        type=float,
+        nargs=6,
+        metavar=("X0", "Y0", "Z0", "X1", "Y1", "Z1"),
+        help="choose from a box in the world; without it, from one round the positions used",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
     """Calibrate, tell, write; a calibration that failed is told but not written."""
-    cell, calibration = calibrate_cell(read_cell(args.cell), args.method, args.refine)
+    given = read_cell(args.cell)
+    _check(args, given)
+    candidates = _candidates(args)
+    cell, calibration = calibrate_cell(given, args.method, args.refine)
     failed = calibration.verdict == "failed"
-    if args.out is not None and not failed:
-        write_cell(cell, args.out)
+    report = _report(args, cell, calibration, candidates)
+    if not failed:
+        _write(args, cell, report)
     if args.json:
-        print_json(document(calibration))
+        print_json(document(report))
     else:
-        tell(calibration)
-    warn(calibration.warnings)
+        tell(report)
+    warn(report.warnings)
+    if failed and (args.sigma_map is not None or _advice_asked(args)):
+        warn(["no map and no advice from a calibration that failed"])
     if args.out is not None and not failed and any(thing.picks for thing in cell.objects):
         warn(
             ["the objects were modelled with the camera as it was before: run monocell model again"]
@@ -57,90 +96,68 @@ def run(args: argparse.Namespace) -> int:
     return NOT_TRUSTED if failed else DONE
 
 
-def document(calibration: Calibration) -> dict[str, Any]:
-    """The whole report as JSON values."""
-    camera = calibration.camera
-    return {
-        "verdict": calibration.verdict,
-        "warnings": calibration.warnings,
-        "method": calibration.method,
-        "camera": camera_entry(camera),
-        "center_world": camera.centre_world,
-        "center_sigma": camera.centre_sigma(),
-        "rotation_sigma_degrees": _degrees(camera.rotation_sigma()),
-        "rms_pixels": calibration.rms_pixels,
-        "edge_bias_pixels": calibration.edge_bias_pixels,
-        "edge_bias_sigma_pixels": calibration.edge_bias_sigma_pixels,
-        "misfit": calibration.misfit,
-        **unknowns_document(calibration),
-        "positions": {
-            "count": calibration.geometry.count,
-            "length": calibration.geometry.length,
-            "off_line": calibration.geometry.off_line,
-            "off_plane": calibration.geometry.off_plane,
-        },
-        "candidates": [
-            {
-                "camera_from_base": pose_entry(candidate.camera_from_base),
-                "off_pixels": candidate.off_pixels,
-            }
-            for candidate in calibration.candidates
-        ],
-        "sightings": [
-            {
-                "picture": report.picture,
-                "center": report.center_world,
-                "status": report.status,
-                "reason": report.reason,
-                "rms_pixels": report.rms_pixels,
-                "off_pixels": report.off_pixels,
-                "off_millimetres": report.off_millimetres,
-            }
-            for report in calibration.sightings
-        ],
-    }
+def _check(args: argparse.Namespace, cell: Cell) -> None:
+    """Refuse what can't be done before the work is."""
+    from ..sigma_map import check_map_name
 
-
-def tell(calibration: Calibration) -> None:
-    """The report for a person."""
-    camera = calibration.camera
-    centre, rotation = camera.centre_sigma(), _degrees(camera.rotation_sigma())
-    print(f"camera at {point_told(camera.centre_world)}")
-    if centre is not None and rotation is not None:
-        print(
-            f"1 sigma   position {millimetres(float(np.linalg.norm(centre)))}, "
-            f"rotation {np.linalg.norm(rotation):.4f} deg"
+    surface_of(cell, args.surface)
+    if args.sigma_map is not None:
+        check_map_name(args.sigma_map, cell)
+    if args.method != "joint" and (args.sigma_map is not None or _advice_asked(args)):
+        raise InvalidValue(
+            f"the baseline {args.method} states no error to map or to lower; use --method joint"
         )
-    else:
-        print(f"1 sigma   unknown: the baseline {calibration.method} states none")
-        for candidate in calibration.candidates:
-            centre = candidate.camera_from_base.inverse().translation
-            print(f"candidate {point_told(centre)}, balls {candidate.off_pixels:.2f} px off")
-        print("what follows is of the joint fit that the baseline is held against")
-    print(
-        f"outlines  {calibration.rms_pixels:.2f} px rms, edge bias "
-        f"{calibration.edge_bias_pixels:+.3f} ± {calibration.edge_bias_sigma_pixels:.3f} px"
-    )
-    for line in unknowns_told(calibration):
-        print(line)
-    rows = [
-        (
-            report.picture,
-            report.status,
-            _number(report.rms_pixels),
-            _number(report.off_pixels),
-            _number(report.off_millimetres),
-            report.reason,
+
+
+def _advice_asked(args: argparse.Namespace) -> bool:
+    return bool(args.advise or args.advise_from is not None or args.advise_box is not None)
+
+
+def _candidates(args: argparse.Namespace) -> Array | None:
+    """The positions (N, 3) to choose from; None for those round the ones used."""
+    from ...core.calibration.advise import positions_in_box
+    from ..advised_positions import read_positions
+
+    if args.advise_from is not None:
+        return read_positions(args.advise_from)
+    if args.advise_box is not None:
+        return positions_in_box(np.reshape(args.advise_box, (2, 3)))
+    return None
+
+
+def _report(
+    args: argparse.Namespace, cell: Cell, calibration: Calibration, candidates: Array | None
+) -> Report:
+    from ...core.calibration.accuracy import accuracy_of, advised
+    from ...core.calibration.advise import positions_in_box, reachable_box
+
+    plane = surface_of(cell, args.surface)
+    accuracy = accuracy_of(cell, calibration, plane)
+    asked = args.sigma_map is not None or _advice_asked(args)
+    if calibration.verdict == "failed" or not asked:
+        return Report(calibration, accuracy, plane.name)
+    if accuracy.surface is None:
+        raise InvalidValue(
+            f"the picture shows nothing of {plane.name}, so there is no error to map or to lower; "
+            "name another --surface"
         )
-        for report in calibration.sightings
-    ]
-    print(table(("sighting", "status", "rms px", "off px", "off mm", "why"), rows))
-    print(f"verdict   {calibration.verdict}")
+    if not _advice_asked(args):
+        return Report(calibration, accuracy, plane.name)
+    if candidates is None:
+        candidates = positions_in_box(reachable_box(calibration.fit.places_base))
+    advice = advised(calibration, accuracy.surface.area, candidates)
+    return Report(calibration, accuracy, plane.name, advice)
 
 
-def _degrees(radians: Any) -> Any:
-    return None if radians is None else np.degrees(radians)
+def _write(args: argparse.Namespace, cell: Cell, report: Report) -> None:
+    from ..pictures import write_picture
+    from ..sigma_map import drawn_map
 
-
-def _number(value: float) -> str:
-    return "-" if np.isnan(value) else f"{value:.2f}"
+    surface = report.accuracy.surface
+    drawn = None
+    if args.sigma_map is not None and surface is not None:
+        drawn = drawn_map(cell, report.calibration, surface)
+    if args.out is not None:
+        write_cell(cell, args.out)
+    if drawn is not None:
+        write_picture(args.sigma_map, drawn)
