@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, frozen
-from ..ball.outline import MOST_POINTS, SphereOutline
+from ..ball.outline import SphereOutline
+from ..ball.outline_ring import MOST_POINTS
 from ..ball.sphere import OutlineRays, tangency
 from ..camera import Camera
 from ..errors import InvalidValue

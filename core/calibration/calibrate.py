@@ -9,7 +9,7 @@ from dataclasses import replace
 from ..ball.outline import SphereOutline
 from ..camera import Camera
 from ..cell import Cell
-from ..errors import NotConverged
+from ..errors import MonocellError, NotConverged
 from ..mount import Mount
 from ..picture.shelf import PictureShelf
 from ..sighting import Sighting, SphereSighting
@@ -88,7 +88,34 @@ def _calibrated(cell: Cell, problem: Problem, shelf: PictureShelf) -> Calibratio
         failures = {i: why for i, why in failures.items() if i not in again}
         if not has_twins(cell.sightings, outlines, problem.duplicates):
             solution = problem.solved(outlines, failures)
-    return solution.calibration
+    return _measured_closely(cell, problem, shelf, solution, outlines, failures).calibration
+
+
+def _measured_closely(
+    cell: Cell,
+    problem: Problem,
+    shelf: PictureShelf,
+    solution: Solution,
+    outlines: Outlines,
+    failures: Failures,
+) -> Solution:
+    """The pose from outlines measured where all sightings together have them.
+
+    What hides a part of one ball pulls its outline less when its place is known. The pose stays as
+    it was where the closer look is not believed as much.
+    """
+    closer = look_again(cell, shelf, solution.expected_everywhere(problem.duplicates), closely=True)
+    if not closer:
+        return solution
+    outlines = [closer.get(i, outline) for i, outline in enumerate(outlines)]
+    failures = {i: why for i, why in failures.items() if i not in closer}
+    try:
+        closely = problem.solved(outlines, failures)
+    except MonocellError:
+        return solution
+    before, after = solution.calibration, closely.calibration
+    worse = after.verdict == "failed" or after.count_used < before.count_used
+    return solution if worse else closely
 
 
 def _by_choice(

@@ -19,8 +19,9 @@ from .observation import Observation, OutlineObservation, numbers_told
 from .place_noise import own_pulls, place_sigma
 from .unknowns import BIAS, Columns, Refined, State, Unknowns
 
-# 1 sigma of the edge bias that the limb's model leaves, measured on rendered balls
-BIAS_SIGMA_PIXELS = 0.05
+# 1 sigma of the edge bias that the limb's model leaves: 0.05 px for matt balls of rendered pictures,
+# but a polished ball mirrors at its limb what stands behind it, and looks 0.2 px too small
+BIAS_SIGMA_PIXELS = 0.12
 
 
 @dataclass(frozen=True, eq=False)

@@ -65,9 +65,12 @@ def look_for_all(
 
 
 def look_again(
-    cell: Cell, shelf: PictureShelf, expected_camera: dict[int, Array]
+    cell: Cell, shelf: PictureShelf, expected_camera: dict[int, Array], *, closely: bool = False
 ) -> dict[int, SphereOutline]:
-    """Outlines of some sightings, looked for where each is expected (3,) in the camera."""
+    """Outlines of some sightings, looked for where each is expected (3,) in the camera.
+
+    `closely` where the expectation is better than a pixel.
+    """
     from ..ball.find import measure_sphere
 
     found: dict[int, SphereOutline] = {}
@@ -77,7 +80,11 @@ def look_again(
         try:
             picture = shelf.read(sighting.picture)
             found[i] = measure_sphere(
-                picture, cell.camera.intrinsics, sighting.radius, expected_camera[i]
+                picture,
+                cell.camera.intrinsics,
+                sighting.radius,
+                expected_camera[i],
+                predicted=closely,
             )
         except MonocellError:
             # the first refusal stands, and says more
@@ -124,6 +131,8 @@ def _seen_of(
     listed: list[SphereOutline | None] = (
         [None] if isinstance(sighting, PointSighting) else list(outlines)
     )
+    if not listed:
+        return []
     return seen_targets(
         [sighting] * len(listed), listed, [place] * len(listed), cell.camera.intrinsics
     )

@@ -50,6 +50,12 @@ class Solution:
             if report.status == "rejected" and i not in duplicates
         }
 
+    def expected_everywhere(self, duplicates: dict[int, int]) -> dict[int, Array]:
+        """Where the pose has every target; nowhere, when the pose is not believed."""
+        if self.calibration.verdict == "failed":
+            return {}
+        return {i: e for i, e in enumerate(self.expected_camera) if i not in duplicates}
+
 
 @dataclass(frozen=True, eq=False)
 class Problem:
