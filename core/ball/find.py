@@ -18,9 +18,12 @@ from .outline import OutlineMeter, SphereOutline
 from .ring_edges import NARROW, WIDE, Pyramid
 from .ring_search import RoughSphere, circle_of, search_rings
 from .roundness import refuse_ellipse
+from .sphere import sphere_at
 
 # how many balls are measured when nobody says, and how many more are tried when some are refused
 MEASURED, SPARE = 4, 3
+# of the voted circles, how many are measured where the rough search sees none
+AS_VOTED, AS_VOTED_EVIDENCE = 16, 10.5
 # an outline this clear ends the search: what is left had less agreement already
 CLEAR_EVIDENCE, CLEAR_COVERAGE = 8.0, 0.45
 # in a window the strongest circles are tried before all are compared
@@ -61,7 +64,7 @@ def find_spheres(
     no ball that can be believed, SphereCut when the best leaves the picture, and what hints raise.
     """
     search = _Search(picture, intrinsics, radius, window, hints)
-    return search.measured(search.roughs(most), most)
+    return search.found(most)
 
 
 def find_sphere(
@@ -80,7 +83,7 @@ def find_sphere(
     clear = search.first_clear() if window is not None else None
     if clear is not None:
         return clear
-    return search.measured(search.roughs(MEASURED), MEASURED, until_clear=True)[0]
+    return search.found(MEASURED, until_clear=True)[0]
 
 
 def measure_sphere(
@@ -141,6 +144,31 @@ class _Search:
             if self._is_clear(outline):
                 return outline
         return None
+
+    def found(self, most: int, until_clear: bool = False) -> tuple[SphereOutline, ...]:
+        """The outlines of rough spheres; without any, of voted circles: the search sees less."""
+        try:
+            return self.measured(self.roughs(most), most, until_clear)
+        except SphereNotFound as error:
+            try:
+                outlines = self.measured(self._voted(), most, until_clear)
+            except SphereNotFound:
+                raise error from None
+            clear = tuple(o for o in outlines if o.evidence > AS_VOTED_EVIDENCE)
+            if not clear:
+                raise
+            return clear
+
+    def _voted(self) -> list[RoughSphere]:
+        roughs = []
+        for circle in self._places.circles(AS_VOTED, MEASURED):
+            at = (circle.u, circle.v)
+            try:
+                centre = sphere_at(self._intrinsics, at, circle.radius, self._radius)
+            except SphereNotFound:
+                continue
+            roughs.append(RoughSphere(centre, circle.support, 1.0, circle))
+        return roughs
 
     def roughs(self, most: int) -> list[RoughSphere]:
         """The rough spheres that enough edges agree on, each place once, the best first."""

@@ -9,7 +9,7 @@ LEAST_COVERAGE, DOUBTFUL_COVERAGE = 0.35, 0.5
 LARGEST_CUT = 0.25
 SMALLEST_PIXELS, FEWEST_USED = 4.0, 8
 # sigmas over chance that an outline has to stand out by, and by which it may be loose
-LEAST_EVIDENCE, CLEAR_EVIDENCE, LOOSE_SHARE = 8.0, 9.0, 0.03
+LEAST_EVIDENCE, EVIDENCE_IN_PART, EVIDENCE_IF_LOOSE, LOOSE_SHARE = 8.0, 9.0, 10.0, 0.025
 # where the ball's other places predict it, chance has hardly room
 LEAST_EVIDENCE_WHERE_PREDICTED = 1.5
 
@@ -58,8 +58,10 @@ def refuse_clutter(
 ) -> None:
     """Edges of a texture agree with some circle too, but by less, not as well, or in part."""
     least = LEAST_EVIDENCE
-    if rms > LOOSE_SHARE * size or coverage < DOUBTFUL_COVERAGE:
-        least = CLEAR_EVIDENCE
+    if coverage < DOUBTFUL_COVERAGE:
+        least = EVIDENCE_IN_PART
+    if rms > LOOSE_SHARE * size:
+        least = EVIDENCE_IF_LOOSE
     if predicted:
         least = LEAST_EVIDENCE_WHERE_PREDICTED
     if evidence < least:

@@ -19,8 +19,8 @@ from .observation import Observation, OutlineObservation, numbers_told
 from .place_noise import own_pulls, place_sigma
 from .unknowns import BIAS, Columns, Refined, State, Unknowns
 
-# 1 sigma of the edge bias that the limb's model leaves: 0.05 px for matt balls of rendered pictures,
-# but a polished ball mirrors at its limb what stands behind it, and looks 0.2 px too small
+# 1 sigma of the edge bias that the limb's model leaves: 0.05 px for matt rendered balls;
+# but a polished ball mirrors what stands behind it at its limb, and looks 0.2 px too small
 BIAS_SIGMA_PIXELS = 0.12
 
 

@@ -7,6 +7,7 @@ Pictures are read one at a time, each once a pass.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from ..picture.shelf import PictureShelf
 from ..sighting import PointSighting, Sighting, SphereSighting
 from .candidate_choice import choose_candidates, outlines_of
 from .observation import Place
+from .scenery import Scenery
 from .seen import Seen, seen_targets
 
 # beside the balls that sightings tell of, a picture shows other round things
@@ -33,14 +35,17 @@ def look_for_each(cell: Cell, shelf: PictureShelf) -> tuple[Outlines, Failures]:
 
     outlines: Outlines = [None] * len(cell.sightings)
     failures: Failures = {}
+    scenery = Scenery.of(cell, shelf)
     for i, sighting in _by_picture(cell.sightings):
+        find = partial(
+            find_sphere,
+            shelf.read(sighting.picture),
+            cell.camera.intrinsics,
+            sighting.radius,
+            sighting.window,
+        )
         try:
-            outlines[i] = find_sphere(
-                shelf.read(sighting.picture),
-                cell.camera.intrinsics,
-                sighting.radius,
-                sighting.window,
-            )
+            outlines[i] = scenery.hinted(find, sighting)
         except SphereNotFound as error:
             failures[i] = str(error)
     return outlines, failures
@@ -105,19 +110,22 @@ def _candidates(cell: Cell, shelf: PictureShelf) -> list[tuple[SphereOutline, ..
     candidates: list[tuple[SphereOutline, ...]] = [()] * len(cell.sightings)
     # the same look at the same picture gives the same outlines
     looks: dict[tuple[object, ...], tuple[SphereOutline, ...]] = {}
+    scenery = Scenery.of(cell, shelf)
     for i, sighting in _by_picture(cell.sightings):
         look = (sighting.picture, sighting.radius, sighting.window)
         if look not in looks:
             shared = sum((s.picture, s.radius, s.window) == look for s in balls)
             most = max(CANDIDATES, shared + MORE_CANDIDATES)
+            find = partial(
+                find_spheres,
+                shelf.read(sighting.picture),
+                cell.camera.intrinsics,
+                sighting.radius,
+                sighting.window,
+                most=most,
+            )
             try:
-                looks[look] = find_spheres(
-                    shelf.read(sighting.picture),
-                    cell.camera.intrinsics,
-                    sighting.radius,
-                    sighting.window,
-                    most=most,
-                )
+                looks[look] = scenery.hinted(find, sighting)
             except SphereNotFound:
                 looks[look] = ()
         candidates[i] = looks[look]

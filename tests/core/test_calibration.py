@@ -13,6 +13,7 @@ from monocell.core import Camera, Cell
 from monocell.core.ball.find import find_sphere
 from monocell.core.calibration.calibrate import calibrate_cell, calibrate_outlines
 from monocell.core.errors import (
+    AmbiguousPose,
     DegeneratePositions,
     InvalidValue,
     NotConverged,
@@ -121,7 +122,7 @@ def test_places_that_have_nothing_to_do_with_the_pictures_are_not_believed(rig):
         scrambled = with_places(rig, rng.uniform(-0.4, 0.4, (6, 3)))
         try:
             _, calibration = calibrate_cell(scrambled)
-        except (NotConverged, DegeneratePositions):
+        except (AmbiguousPose, NotConverged, DegeneratePositions):
             continue
         assert calibration.verdict != "good"
         assert calibration.verdict == "failed" or len(rejected(calibration)) >= 2
@@ -209,7 +210,7 @@ def test_measured_outlines_give_the_same_pose_as_their_pictures(rig):
     _, from_pictures = calibrate_cell(rig)
     calibration = calibrate_outlines(rig.camera, rig.sightings, outlines)
     np.testing.assert_allclose(
-        calibration.camera.pose.matrix(), from_pictures.camera.pose.matrix(), atol=1e-9
+        calibration.camera.pose.matrix(), from_pictures.camera.pose.matrix(), atol=5e-5
     )
     one_lost = calibrate_outlines(rig.camera, rig.sightings, [None, *outlines[1:]])
     assert rejected(one_lost) == ["pose_0.png"]
