@@ -72,10 +72,11 @@ def _doubts(lens: Intrinsics, fit: JointFit, radius: float | None) -> list[str]:
     suspected = suspicions(fit, radius, lens)
     doubts = list(suspected)
     if fit.disagreement > WEAK_MISFIT:
+        suspect = "the pixels" if radius is None else "the ball's radius"
         doubts.append(
-            f"the sightings disagree {fit.disagreement:.1f} times more than their outlines' noise "
-            f"explains, as if each place were off by {1e3 * fit.place_sigma:.2g} mm: check the "
-            "ball's radius, the intrinsics and the robot's positions"
+            f"the sightings disagree {fit.disagreement:.1f} times more than their own noise "
+            f"explains, as if each place were off by {1e3 * fit.place_sigma:.2g} mm: check "
+            f"{suspect}, the intrinsics and the robot's positions"
         )
     if abs(fit.edge_bias_pixels) > WEAK_BIAS_PIXELS and not suspected:
         doubts.append(
