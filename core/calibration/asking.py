@@ -62,7 +62,7 @@ class Asked:
         left = self._left(after[0], (*given, name))
         value, variance = float(after[0][-1]), float(after[1][-1, -1])
         t = abs(value) / np.sqrt(variance * left)
-        freedom = (self.freedom if left < ALL_EXPLAINED else self.across) - more
+        freedom = max(1, (self.freedom if left < ALL_EXPLAINED else self.across) - more)
         share = (8 * freedom + 1) / (8 * freedom + 3)
         normal = share * np.sqrt(freedom * np.log1p(t * t / freedom))
         explained = (after[2] - before[2]) / left

@@ -195,8 +195,9 @@ def grams_of(measured: Measured, columns: Columns, weights: Array) -> Array:
 
 
 def _freedom(observations: Sequence[Observation], unknowns: Unknowns) -> int:
-    """Three numbers a ball, two a point, less what is solved for."""
-    return max(1, sum(numbers_told(o) for o in observations) - unknowns.count)
+    """Three numbers a ball, two a point, less what is solved for; a bias only balls have."""
+    told = [numbers_told(o) for o in observations]
+    return max(1, sum(told) - unknowns.count + (max(told) < 3))
 
 
 def _across(observations: Sequence[Observation], unknowns: Unknowns) -> int:

@@ -35,7 +35,7 @@ class Seen:
 
     @property
     def is_ball(self) -> bool:
-        return self.outline is not None
+        return isinstance(self.observation, OutlineObservation)
 
     def off_pixels(self, predicted_camera: Array) -> float:
         """How far, across the picture, it is from where a pose puts it (3,)."""
@@ -55,9 +55,9 @@ class Beliefs:
     @staticmethod
     def of(seen: Sequence[Seen]) -> Beliefs:
         tolerances = [
-            ROUGH_PIXELS / one.pixels_per_radian
-            if one.outline is None or one.hint.distance is None
-            else ROUGH_ACROSS * one.outline.radius / one.hint.distance
+            ROUGH_ACROSS * one.observation.radius / (one.hint.distance or np.inf)
+            if isinstance(one.observation, OutlineObservation)
+            else ROUGH_PIXELS / one.pixels_per_radian
             for one in seen
         ]
         return Beliefs(

@@ -15,6 +15,8 @@ from .joint_pose import JointFit
 SIGMAS = 3.0
 LEAST = {"radius": 0.005, "focal": 0.003}
 LEAST_RADIAL_PIXELS = 0.3
+# a radius or a focal length that is told worse than this is not told
+MOST_SIGMA = 0.03
 # what explains the residuals nearly as well can't be told apart: two sigmas less
 NEARLY_AS_WELL = 4.0
 
@@ -60,7 +62,7 @@ def _suspects(fit: JointFit, radius: float | None, lens: Intrinsics) -> list[Sus
 
 def _told(name: str, answer: Answer, fit: JointFit, radius: float, lens: Intrinsics) -> str | None:
     value, sigma = answer.value, answer.sigma
-    if name in LEAST and abs(value) < LEAST[name]:
+    if name in LEAST and (abs(value) < LEAST[name] or sigma > MOST_SIGMA):
         return None
     if name == "radius":
         seems, spread = 1e3 * radius * np.exp(value), 1e3 * radius * sigma

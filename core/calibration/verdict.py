@@ -20,6 +20,8 @@ WEAK_MISFIT, FAILED_MISFIT = 3.0, 15.0
 # and only when it shows: a sharp picture may see a tenth of a millimetre of the robot's own error
 FAILED_OFF_PIXELS = 2.0
 WEAK_BIAS_PIXELS = 0.25
+# no cell is larger, and points alone tell no scale
+FARTHEST = 100.0
 WEAK_ROTATION_DEGREES, WEAK_POSITION_SHARE = 0.2, 0.01
 
 
@@ -72,10 +74,11 @@ def _doubts(lens: Intrinsics, fit: JointFit, radius: float | None) -> list[str]:
     suspected = suspicions(fit, radius, lens)
     doubts = list(suspected)
     if fit.disagreement > WEAK_MISFIT:
+        suspect = "the pixels" if radius is None else "the ball's radius"
         doubts.append(
-            f"the sightings disagree {fit.disagreement:.1f} times more than their outlines' noise "
-            f"explains, as if each place were off by {1e3 * fit.place_sigma:.2g} mm: check the "
-            "ball's radius, the intrinsics and the robot's positions"
+            f"the sightings disagree {fit.disagreement:.1f} times more than their own noise "
+            f"explains, as if each place were off by {1e3 * fit.place_sigma:.2g} mm: check "
+            f"{suspect}, the intrinsics and the robot's positions"
         )
     if abs(fit.edge_bias_pixels) > WEAK_BIAS_PIXELS and not suspected:
         doubts.append(
@@ -85,6 +88,10 @@ def _doubts(lens: Intrinsics, fit: JointFit, radius: float | None) -> list[str]:
     degrees = float(np.degrees(np.sqrt(np.diag(fit.covariance)[:3].max())))
     metres = float(np.sqrt(np.linalg.eigvalsh(fit.covariance[3:, 3:])[-1]))
     distance = float(np.median(np.linalg.norm(fit.camera_from_base.apply(fit.places_base), axis=1)))
+    if distance > FARTHEST:
+        doubts.append(
+            f"the camera would be {distance:.3g} m from what it sees: are the positions in metres?"
+        )
     if degrees > WEAK_ROTATION_DEGREES or metres > WEAK_POSITION_SHARE * distance:
         doubts.append(
             f"the pose is known to {1e3 * metres:.1f} mm and {degrees:.2f} deg only; add sightings "
