@@ -4,7 +4,8 @@
 Each picture's corners are known in the world, because the robot's position and the plate's place in
 the gripper are. `joint` is one PnP on all corners of all pictures, the best a user can do;
 `averaged` is what most do: the board's pose in each picture, and the mean of the camera poses that
-follow; `aligned` uses only where each board is, by rigid alignment.
+follow, without those that a plane's mirror pose spoils; `aligned` uses only where each board is,
+by rigid alignment.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from rendered_panels import PLATE, TAG, charuco_board, tag_dictionary
 
 # what a marker that was not found is looked for again in
 ENLARGED = 2
+MIRRORED = np.radians(12)
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,13 +69,20 @@ def joint_pose(intrinsics: Intrinsics, seen: Sequence[SeenPanel]) -> Pose | None
 
 
 def averaged_pose(intrinsics: Intrinsics, seen: Sequence[SeenPanel]) -> Pose | None:
-    """The mean of what each picture alone says, its turns by the chordal mean."""
+    """The mean of what each picture alone says, its turns by the chordal mean.
+
+    Of a small plane the mirrored pose fits nearly as well: what is turned far from the one that
+    most are near to is left out.
+    """
     poses = [
         camera_from_panel @ s.world_from_panel.inverse()
         for s, camera_from_panel in _each(intrinsics, seen)
     ]
     if not poses:
         return None
+    turns = np.array([[_turn(a, b) for b in poses] for a in poses])
+    middle = int(np.argmin(np.median(turns, axis=1)))
+    poses = [pose for pose, turn in zip(poses, turns[middle], strict=True) if turn < MIRRORED]
     u, _, vt = np.linalg.svd(np.sum([pose.rotation for pose in poses], axis=0))
     rotation = u @ np.diag([1, 1, np.linalg.det(u @ vt)]) @ vt
     centre = np.mean([pose.inverse().translation for pose in poses], axis=0)
@@ -89,6 +98,10 @@ def aligned_pose(intrinsics: Intrinsics, seen: Sequence[SeenPanel]) -> Pose | No
     return pose_from_points(
         world, [camera_from_panel.translation for _, camera_from_panel in pairs]
     )
+
+
+def _turn(one: Pose, other: Pose) -> float:
+    return float(np.linalg.norm((one @ other.inverse()).rotation_vector()))
 
 
 def _each(intrinsics: Intrinsics, seen: Sequence[SeenPanel]) -> list[tuple[SeenPanel, Pose]]:

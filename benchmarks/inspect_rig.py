@@ -49,14 +49,14 @@ def main() -> None:
     print(f"{rig.plan.name}: {rig.plan.ball} ball, {how.told()}")
     with tempfile.TemporaryDirectory(prefix="monocell-bench-") as folder:
         cell = photograph_rig(rig, how, Path(folder))
-        calibration = _calibrated(cell, rig)
+        calibration = _calibrated(cell, rig, rig.plan.hidden * (not bare))
         tiles = [_tile(rig, cell, calibration, i) for i in range(len(cell.sightings))]
     tiles += [np.zeros_like(tiles[0])] * (-len(tiles) % ACROSS)
     rows = [np.hstack(tiles[i : i + ACROSS]) for i in range(0, len(tiles), ACROSS)]
     write_picture(args.out, np.vstack(rows))
 
 
-def _calibrated(cell: Cell, rig: RenderedRig) -> Calibration | None:
+def _calibrated(cell: Cell, rig: RenderedRig, hidden: np.ndarray) -> Calibration | None:
     try:
         calibration = calibrate_cell(cell)[1]
     except MonocellError as error:
@@ -69,9 +69,9 @@ def _calibrated(cell: Cell, rig: RenderedRig) -> Calibration | None:
     )
     for warning in calibration.warnings:
         print(f"  {warning}")
-    for i, (report, hidden) in enumerate(zip(calibration.sightings, rig.plan.hidden, strict=True)):
+    for i, (report, part) in enumerate(zip(calibration.sightings, hidden, strict=True)):
         print(
-            f"  {i}: {report.status}, {100 * hidden:.0f} % hidden, rms {report.rms_pixels:.2f} px, "
+            f"  {i}: {report.status}, {100 * part:.0f} % hidden, rms {report.rms_pixels:.2f} px, "
             f"off {report.off_pixels:.2f} px {report.reason}"
         )
     return calibration

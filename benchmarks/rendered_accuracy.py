@@ -6,7 +6,7 @@
 40 mm ball, 5-8 positions, camera 2-3 m away, f about 1200 px; random light, colours and textures.
 For each class: median, 90 % and largest error of the camera's place and turn, how often the truth
 lies in the stated 95 % ellipsoid, and the median error in place of the baselines on the same
-outlines. What is refused is counted, and in no other figure.
+outlines. What is refused, or solved with the verdict `failed`, is counted and in no other figure.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ CLASSES = {
     "noise 4, blur 0.8, JPEG 80, gripper": (NOISY, False, 1.0, 0.02),
     "640x480, ball of 9 px, noise 4, JPEG 80": (SMALL, False, 2.5, 0.04),
 }
-HEADER = ("rigs", "refused", "good", "mm", "90 %", "max", "deg", "90 %", "max", "in 95 %",
+HEADER = ("rigs", "refused", "failed", "weak", "mm", "90 %", "max", "deg", "90 %", "max", "in 95 %",
           *(f"{name} mm" for name in BASELINES))  # fmt: skip
 
 
@@ -61,14 +61,18 @@ def main() -> None:
 
 
 def _figures(scores: list[Score]) -> tuple[str, ...]:
-    solved = [score for score in scores if score.verdict != "refused"]
+    solved = [score for score in scores if score.verdict in ("good", "weak")]
+    counts = [
+        sum(s.verdict == verdict for s in scores) for verdict in ("refused", "failed", "weak")
+    ]
+    if not solved:
+        return (str(len(scores)), *map(str, counts), *[""] * (len(HEADER) - 4))
     place = 1e3 * np.array([score.place for score in solved])
     turn = np.degrees([score.turn for score in solved])
     within = np.mean([score.probability < 0.95 for score in solved])
     return (
         str(len(scores)),
-        str(len(scores) - len(solved)),
-        str(sum(score.verdict == "good" for score in solved)),
+        *map(str, counts),
         *(f"{v:.2f}" for v in (np.median(place), np.quantile(place, 0.9), place.max())),
         *(f"{v:.4f}" for v in (np.median(turn), np.quantile(turn, 0.9), turn.max())),
         f"{100 * within:.0f} %",
