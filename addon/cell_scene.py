@@ -136,7 +136,7 @@ def _pose_or_guess(cell: Cell) -> Pose:
     if cell.camera.camera_from_world is not None:
         return cell.camera.camera_from_world
     middle = _middle(cell)
-    reach = max((np.linalg.norm(s.center_world - middle) for s in cell.sightings), default=0.0)
+    reach = max((np.linalg.norm(place - middle) for place in _places(cell)), default=0.0)
     direction = FIRST_DIRECTION / np.linalg.norm(FIRST_DIRECTION)
     return Pose.looking_at(
         middle + max(LEAST_DISTANCE, 3 * float(reach)) * direction, middle, [0, 0, 1]
@@ -152,7 +152,14 @@ def _aim(scene: Any, view: Any) -> None:
 
 def _middle(cell: Cell) -> Array:
     """The middle of the ball's positions, (3,); the world's origin without any."""
-    return np.array([s.center_world for s in cell.sightings] or [[0.0, 0.0, 0.0]]).mean(axis=0)
+    return np.array(_places(cell) or [np.zeros(3)]).mean(axis=0)
+
+
+def _places(cell: Cell) -> list[Array]:
+    """The known places of the cell's sightings, and of the rest that of the flange."""
+    flanges = [s.world_from_flange for s in cell.sightings if s.center_world is None]
+    places = [s.center_world for s in cell.sightings if s.center_world is not None]
+    return [*places, *(flange.translation for flange in flanges if flange is not None)]
 
 
 def _camera_of(scene: Any) -> Any:

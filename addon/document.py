@@ -92,11 +92,15 @@ def _fill_sightings(stored: Any, cell: Cell, report: Report | None) -> None:
     for i, sighting in enumerate(cell.sightings):
         row = stored.sightings.add()
         row.picture = sighting.picture
-        row.place = "  ".join(f"{x:.2f}" for x in sighting.center_world)
+        row.place = _held_at(sighting.center_world)
         if report is not None:
             seen = report.sightings[i]
             row.status, row.reason = seen.status, seen.reason
             row.residual = "–" if seen.rms_pixels is None else f"{seen.rms_pixels:.2f}"
+
+
+def _held_at(place: Any) -> str:
+    return "on the flange" if place is None else "  ".join(f"{x:.2f}" for x in place)
 
 
 def _fill_references(stored: Any, cell: Cell) -> None:

@@ -17,6 +17,7 @@ from ..core.camera import Camera
 from ..core.cell import Cell
 from ..core.picture.wireframe import finite_parts, wireframe
 from ..core.primitives import Primitive
+from ..core.sighting import SphereSighting
 from .drawing import GREEN, HALO, ORANGE, RED, SKY, YELLOW, Color
 from .report import Report
 
@@ -68,5 +69,7 @@ def _expected(cell: Cell, i: int) -> tuple[float, float, float, float] | None:
     if cell.camera.camera_from_world is None:
         return None
     sighting = cell.sightings[i]
+    if not isinstance(sighting, SphereSighting) or sighting.center_world is None:
+        return None
     x, y, z = cell.camera.pose.apply(sighting.center_world)
     return (float(x), float(y), float(z), sighting.radius) if z > sighting.radius else None

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from .camera import Camera
-from .errors import InvalidValue
+from .errors import InvalidValue, NoPose
 from .mount import Mount
 from .primitives import Primitive
 from .reference import ReferenceLine, ReferencePlane
@@ -58,6 +58,18 @@ class Cell:
         """The cell with its camera on that mount, standing where it stood for `picture`."""
         return replace(self, mount=mount, camera=mount.placed(self.camera))
 
+    def standing_camera(self) -> Camera:
+        """The camera where it took `picture`. Raises NoPose with what is missing."""
+        if self.camera.camera_from_world is None and self.mount is not None:
+            missing = "camera_from_flange" if self.mount.camera_from_flange is None else ""
+            raise NoPose(
+                "the camera rides on the flange, and mount."
+                f"{missing or 'world_from_flange'} is missing: "
+                + ("calibrate it" if missing else "give the flange's pose of the cell's picture")
+            )
+        self.camera.pose  # noqa: B018  a camera without pose is refused here
+        return self.camera
+
     def with_objects(self, objects: Iterable[Primitive]) -> Cell:
         return replace(self, objects=tuple(objects))
 
@@ -91,7 +103,8 @@ def check_sightings(sightings: Sequence[Sighting], mount: Mount | None) -> None:
         where = f"sightings[{i}].world_from_flange"
         if mount is not None and sighting.world_from_flange is None:
             raise InvalidValue(f"{where}: is missing; the camera rides on the flange")
-        if mount is None and None not in (sighting.world_from_flange, sighting.center_world):
+        told_twice = sighting.world_from_flange is not None and sighting.center_world is not None
+        if mount is None and told_twice:
             raise InvalidValue(
                 f"{where}: the camera is fixed, and center tells the place already; give one of "
                 "the two, or the camera's mount"

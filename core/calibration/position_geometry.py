@@ -84,8 +84,11 @@ def check_positions(positions_world: ArrayLike) -> PositionGeometry:
 
 
 def _different(points: Array) -> int:
+    """How many different places there are; three stand for more."""
     kept: list[Array] = []
     for point in points:
+        if len(kept) == 3:
+            break
         if all(np.linalg.norm(point - other) > SAME_PLACE for other in kept):
             kept.append(point)
     return len(kept)

@@ -66,7 +66,8 @@ def model_cell(cell: Cell, pick_sigma_pixels: float = 1.0) -> tuple[Cell, tuple[
             objects.append(thing)
             continue
         sketch = thing if isinstance(thing, Sketch) else Sketch.of(thing)
-        modelled = solve_sketch(cell.camera, sketch, cell.reference(sketch.on), pick_sigma_pixels)
+        reference = cell.reference(sketch.on)
+        modelled = solve_sketch(cell.standing_camera(), sketch, reference, pick_sigma_pixels)
         objects.append(modelled.object)
         results.append(modelled)
     return replace(cell, objects=tuple(objects), sketches=()), tuple(results)

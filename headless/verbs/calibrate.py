@@ -89,6 +89,8 @@ def run(args: argparse.Namespace) -> int:
     warn(report.warnings)
     if failed and (args.sigma_map is not None or _advice_asked(args)):
         warn(["no map and no advice from a calibration that failed"])
+    if cell.mount is not None and cell.mount.world_from_flange is None:
+        warn(["mount.world_from_flange of the cell's picture is missing: model needs it"])
     if args.out is not None and not failed and any(thing.picks for thing in cell.objects):
         warn(
             ["the objects were modelled with the camera as it was before: run monocell model again"]

@@ -13,6 +13,7 @@ from ...core.atomic import made_folder
 from ...core.cell import Cell
 from ...core.document.cell_file import read_cell, write_cell
 from ...core.errors import InvalidValue
+from ...core.sighting import SphereSighting
 from ..blender import require_blender
 from ..told import progress
 
@@ -37,7 +38,8 @@ def run(args: argparse.Namespace) -> int:
             f"--samples: must be 1 or more, up to {MOST_SAMPLES}, got {args.samples}"
         )
     cell = read_cell(args.cell)
-    cell.camera.pose  # noqa: B018  a camera without pose is refused before anything is made
+    cell.standing_camera()  # without a pose it is refused before anything is made
+    _refuse_what_is_not_held(cell)
     if args.out.resolve() == cell.folder.resolve():
         raise InvalidValue(f"{args.out}: is the cell's own folder, with its pictures; name another")
     truth = _named(cell, args.out)
@@ -75,6 +77,17 @@ def _refuse_shared_names(truth: Cell) -> None:
             )
 
 
+def _refuse_what_is_not_held(cell: Cell) -> None:
+    """A ball is rendered where it is known to be, and before a camera that stands still."""
+    if cell.mount is not None and cell.sightings:
+        raise InvalidValue("mount: sightings of a camera on the flange are not rendered")
+    for i, sighting in enumerate(cell.sightings):
+        if not isinstance(sighting, SphereSighting) or sighting.center_world is None:
+            raise InvalidValue(
+                f"sightings[{i}]: only balls at known places are rendered; give center and radius"
+            )
+
+
 def _render_all(truth: Cell, samples: int) -> None:
     from ...scene.stage import Stage
     from ...scene.work_cell import Ball, WorkCell
@@ -85,6 +98,7 @@ def _render_all(truth: Cell, samples: int) -> None:
         stage.render(truth.folder / truth.picture, samples=samples)
     with Stage(WorkCell(truth.camera)) as stage:
         for sighting in truth.sightings:
+            assert isinstance(sighting, SphereSighting)
             progress(f"rendering {sighting.picture}")
             stage.move((), Ball(sighting.center_world, sighting.radius, BALL_COLOR))
             stage.render(truth.folder / sighting.picture, samples=samples)

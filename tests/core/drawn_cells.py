@@ -19,6 +19,8 @@ from monocell.core import (
     Sketch,
     SphereSighting,
 )
+from monocell.core.mount import Mount
+from monocell.core.sighting import PointSighting
 
 NAMES = st.text(min_size=1, max_size=8).filter(lambda name: name.isprintable())
 FILES = st.sampled_from(["cell.png", "pictures/a b.png", "../été.jpg", "深.png"])
@@ -36,9 +38,24 @@ def covariances(draw, size):
 
 
 @st.composite
-def sightings(draw):
+def sightings(draw, mounted):
     window = st.tuples(numbers(-9, 900), numbers(-9, 900), numbers(8, 900), numbers(8, 900))
-    return SphereSighting(draw(FILES), draw(vectors(3.0)), draw(SIZES), draw(st.none() | window))
+    known = draw(st.booleans())
+    place = draw(vectors(3.0)) if known else None
+    flange = draw(poses()) if mounted or not known else None
+    target = draw(st.just("") | NAMES)
+    if draw(st.booleans()):
+        pixel, sigma = draw(PIXELS), draw(numbers(0.01, 9))
+        return PointSighting(draw(FILES), place, pixel, sigma, flange, target)
+    radius = draw(SIZES)
+    return SphereSighting(draw(FILES), place, radius, draw(st.none() | window), flange, target)
+
+
+@st.composite
+def mounts(draw):
+    pose = draw(st.none() | poses())
+    spread = draw(covariances(6)) if pose is not None else None
+    return Mount(pose, spread, draw(st.none() | poses()))
 
 
 @st.composite
@@ -71,15 +88,17 @@ def cells(draw):
     )
     names = draw(st.lists(NAMES, max_size=3, unique=True))
     listed = [draw(things(name, planes)) for name in names]
-    pose = draw(st.none() | poses())
+    pose, mount = draw(st.none() | poses()), draw(st.none() | mounts())
+    camera = Camera(draw(lenses()), pose, draw(covariances(6)) if pose is not None else None)
     return Cell(
-        Camera(draw(lenses()), pose, draw(covariances(6)) if pose is not None else None),
+        camera if mount is None else mount.placed(camera),
         draw(st.none() | FILES),
-        tuple(draw(st.lists(sightings(), max_size=2))),
+        tuple(draw(st.lists(sightings(mount is not None), max_size=2))),
         references,
         tuple(thing for thing in listed if not isinstance(thing, Sketch)),
         tuple(thing for thing in listed if isinstance(thing, Sketch)),
         Path(),
+        mount,
     )
 
 
