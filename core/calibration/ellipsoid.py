@@ -93,9 +93,9 @@ def reach_95(fit: JointFit) -> float:
     - the outlines' own sigmas are right: chi-squared of three degrees of freedom;
     - they are wrong by one factor, known only from how far the sightings disagree: `3 F(3, f)` on
       that scale, whose tails are fat where few sightings tell it;
-    - what exceeds them comes from the positions, which are off by as much in every direction: a
-      ball's distance is told too badly to show that, so it is spread over fewer equations, two a
-      sighting, and judged by `3 F` of those.
+    - what exceeds them comes from the positions, as the stated covariance has it (`place_sigma`):
+      a ball's distance is told too badly to show that, so it is known from fewer equations, two a
+      sighting, and judged by `3 F` of those, as far as it makes up the disagreement.
 
     The stated covariance already carries `misfit`, which only widens; so the scale is taken from
     the sightings themselves.
@@ -104,11 +104,11 @@ def reach_95(fit: JointFit) -> float:
     found = sum(say.pull for say in fit.says) / freedom
     # the edge bias is told by the balls' sizes, not across the line of sight
     across = max(1, 2 * len(fit.says) - (len(fit.unknowns) - 1))
-    excess = max(0.0, found - 1.0) * max(1.0, freedom / across)
+    of_places = 1 - 1 / fit.disagreement**2 if fit.place_sigma > 0 else 0.0
     squares = (
         CHI_SQUARED_95,
         found * three_f_quantile(freedom),
-        excess * three_f_quantile(across),
+        of_places * three_f_quantile(across) + (1 - of_places) * CHI_SQUARED_95,
     )
     return math.sqrt(max(squares)) / fit.misfit
 

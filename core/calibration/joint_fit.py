@@ -42,6 +42,7 @@ class JointFit:
       says of them, before the misfit; `prior_information` (P, P): what was known beforehand. The
       covariance of all of them is `inverse(sum of informations + prior) * misfit**2`.
     - `refined`: by what factor refining changed radius and focal length
+    - `own_says` (S,): the same as `says` were all places exact, to tell who disagrees
     - `asked`: what is not solved for, but would explain the residuals better
     """
 
@@ -63,6 +64,7 @@ class JointFit:
     offsets: Array
     offset_sigmas: Array
     refined: tuple[Refined, ...]
+    own_says: tuple[Say, ...]
     asked: Asked
 
 
@@ -139,13 +141,14 @@ class Stand:
             np.sqrt(own_pulls(self.grams, self.allowed) / told),
             tuple(self.columns.residual_pixels[rows] for rows in self.measured.rows),
             unknowns.names,
-            tuple(Say(s.information[:count, :count], s.gradient[:count], s.pull) for s in says),
+            _of_solved(says, count),
             _prior(count),
             unknowns.places_base(state),
             unknowns.targets,
             state.offsets,
             sigmas[BIAS + 1 : unknowns.after_offsets].reshape(-1, 3),
             unknowns.refinements(state, sigmas),
+            _of_solved(self._says(0.0), count),
             self._asked(),
         )
 
@@ -185,6 +188,10 @@ class Stand:
         if covariance is None:
             raise DegeneratePositions(_undetermined(self.unknowns))
         return covariance
+
+
+def _of_solved(says: Sequence[Say], count: int) -> tuple[Say, ...]:
+    return tuple(Say(s.information[:count, :count], s.gradient[:count], s.pull) for s in says)
 
 
 def grams_of(measured: Measured, columns: Columns, weights: Array) -> Array:

@@ -17,6 +17,7 @@ from ..covariance import inverse_information
 from .common_error import Say
 from .ellipsoid import three_f_tail
 from .joint_pose import JointFit
+from .unknowns import BIAS
 
 # the pose hangs on a sighting without which the camera moves by so many of its stated sigmas
 HANGS_SIGMAS = 5.0
@@ -64,14 +65,14 @@ class LeftOut:
 
 def leave_one_out(fit: JointFit) -> tuple[LeftOut | None, ...]:
     """One a sighting of the fit, in its order; None where the others can't hold the pose."""
-    information = sum((say.information for say in fit.says), fit.prior_information)
-    covariance = inverse_information(information)
-    if covariance is None:
+    weighed, exact = _Normal.of(fit, fit.says), _Normal.of(fit, fit.own_says)
+    if weighed is None or exact is None:
         return (None,) * len(fit.says)
-    pull = float(sum(say.pull for say in fit.says))
-    gradient = fit.asked.gradient[: len(fit.unknowns)]
-    whole = _Whole(fit, information, gradient, covariance, pull, fit.asked.freedom)
-    return tuple(_without(whole, say) for say in fit.says)
+    freedom = fit.asked.freedom
+    return tuple(
+        _without(fit, weighed, say, exact.surprise(own, freedom))
+        for say, own in zip(fit.says, fit.own_says, strict=True)
+    )
 
 
 def leverage_warnings(
@@ -120,63 +121,81 @@ def _moved(change: LeftOut) -> str:
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _Whole:
-    """The fit of all sightings: its normal equations, their inverse, and how well they agree."""
+@dataclass(frozen=True)
+class _Surprise:
+    """By what factor the others agree better without one, how rare that is, and how many checks."""
 
-    fit: JointFit
+    agreement: float
+    chance: float
+    checks: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Normal:
+    """The normal equations of all sightings, their inverse, and chi-squared where they cancel."""
+
     information: Array
     gradient: Array
     covariance: Array
     pull: float
-    freedom: int
+
+    @staticmethod
+    def of(fit: JointFit, says: Sequence[Say]) -> _Normal | None:
+        information = sum((say.information for say in says), fit.prior_information)
+        prior = fit.prior_information[BIAS] * fit.edge_bias_pixels
+        gradient = sum((say.gradient for say in says), prior)
+        covariance = inverse_information(information)
+        if covariance is None:
+            return None
+        pull = float(sum(say.pull for say in says) - gradient @ covariance @ gradient)
+        return _Normal(information, gradient, covariance, pull)
+
+    def surprise(self, say: Say, freedom: int) -> _Surprise:
+        """How much one sighting disagrees, against the scale that the others show.
+
+        The scale is not let fall below the outlines' own: agreeing by luck accuses nobody.
+        """
+        gain, directions = self._disagreement(say)
+        checks = max(0, freedom - directions)
+        if checks < 1 or directions == 0:
+            return _Surprise(1.0, float("nan"), checks)
+        scale = max(1.0, (self.pull - gain) / checks)
+        agreement = float(np.sqrt(max(1.0, self.pull / freedom) / scale))
+        # a mean square over its directions, as three of them would show it
+        return _Surprise(agreement, three_f_tail(3 * gain / directions / scale, checks), checks)
+
+    def _disagreement(self, say: Say) -> tuple[float, int]:
+        """By how much chi-squared falls without a sighting, and in how many directions it may.
+
+        Where all gradients cancel, its own has the covariance `I - I C I` when it is as good as
+        the others.
+        """
+        information = say.information
+        cancelled = say.gradient - information @ self.covariance @ self.gradient
+        scale = 1 / np.sqrt(np.maximum(np.diag(information), 1e-300))
+        spread = (information - information @ self.covariance @ information) * np.outer(
+            scale, scale
+        )
+        values, vectors = np.linalg.eigh(spread)
+        kept = values > DETERMINED
+        along = vectors.T @ (cancelled * scale)
+        return float((along[kept] ** 2 / values[kept]).sum()), int(kept.sum())
 
 
-def _without(whole: _Whole, say: Say) -> LeftOut | None:
+def _without(fit: JointFit, whole: _Normal, say: Say, surprise: _Surprise) -> LeftOut | None:
     others = inverse_information(whole.information - say.information)
     if others is None:
         return None
     # a fit with Tukey's weights stands a little beside where its gradients cancel: what counts is
     # how far the place where they do moves
     twist = (whole.covariance @ whole.gradient - others @ (whole.gradient - say.gradient))[:6]
-    misfit, world_from_camera = whole.fit.misfit, whole.fit.camera_from_base.rotation.T
-    stated = whole.covariance[:6, :6] * misfit**2
-    gain, directions = _disagreement(say, whole.covariance)
-    checks = max(0, whole.freedom - directions)
-    agreement, chance = _surprise(whole, gain, directions, checks)
+    stated = whole.covariance[:6, :6] * fit.misfit**2
     return LeftOut(
-        -world_from_camera @ twist[3:],
+        -fit.camera_from_base.rotation.T @ twist[3:],
         twist[:3],
         float(np.sqrt(twist @ np.linalg.solve(stated, twist))),
-        float(np.sqrt(np.trace(others[3:6, 3:6]))) * misfit,
-        agreement,
-        chance,
-        checks,
+        float(np.sqrt(np.trace(others[3:6, 3:6]))) * fit.misfit,
+        surprise.agreement,
+        surprise.chance,
+        surprise.checks,
     )
-
-
-def _disagreement(say: Say, covariance: Array) -> tuple[float, int]:
-    """By how much the chi-squared falls without a sighting, and in how many directions it may.
-
-    Its gradient has the covariance `I - I C I` when it is as good as the others.
-    """
-    information = say.information
-    scale = 1 / np.sqrt(np.maximum(np.diag(information), 1e-300))
-    spread = (information - information @ covariance @ information) * np.outer(scale, scale)
-    values, vectors = np.linalg.eigh(spread)
-    kept = values > DETERMINED
-    along = vectors.T @ (say.gradient * scale)
-    return float((along[kept] ** 2 / values[kept]).sum()), int(kept.sum())
-
-
-def _surprise(whole: _Whole, gain: float, directions: int, checks: int) -> tuple[float, float]:
-    """The factor of agreement, and the chance, against the scale that the others show.
-
-    The scale is not let fall below the outlines' own: agreeing by luck accuses nobody.
-    """
-    if checks < 1 or directions == 0:
-        return 1.0, float("nan")
-    scale = max(1.0, (whole.pull - gain) / checks)
-    agreement = float(np.sqrt(max(1.0, whole.pull / whole.freedom) / scale))
-    # a mean square over its directions, as three of them would show it
-    return agreement, three_f_tail(3 * gain / directions / scale, checks)

@@ -73,6 +73,8 @@ def test_the_truth_lies_inside_whatever_the_scale_of_the_noise_is(freedom, scale
             says=[SimpleNamespace(pull=pull / balls)] * balls,
             unknowns=range(7),
             misfit=misfit,
+            place_sigma=0.0,
+            disagreement=misfit,
         )
         inside += square <= (reach_95(fit) * misfit) ** 2
     assert inside / 3000 > 0.94

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 
 import cv2
@@ -53,7 +54,7 @@ def test_a_ball_that_is_not_there_gets_nobody_else_s_outline(crowded):
     assert [r.status for r in calibration.sightings] == ["used"] * 5 + ["rejected"]
 
 
-def test_few_pictures_are_kept_and_each_is_read_once_a_pass(tmp_path, monkeypatch):
+def test_few_pictures_are_kept_and_each_is_read_once_a_pass_of_three(tmp_path, monkeypatch):
     cell, read = write_rig(tmp_path), []
 
     def counted(path, intrinsics=None):
@@ -63,7 +64,9 @@ def test_few_pictures_are_kept_and_each_is_read_once_a_pass(tmp_path, monkeypatc
     original = shelf.read_picture
     monkeypatch.setattr(shelf, "read_picture", counted)
     calibrate_cell(cell)
-    assert sorted(read) == sorted({s.picture for s in cell.sightings})
+    # for what stays the same, for the balls, and for the closer look
+    assert set(read) == {s.picture for s in cell.sightings}
+    assert max(Counter(read).values()) <= 3
     shelf_of_two = shelf.PictureShelf(cell)
     for sighting in cell.sightings:
         shelf_of_two.read(sighting.picture)
