@@ -73,6 +73,16 @@ def calibrate_outlines(
 
 
 def _calibrated(cell: Cell, problem: Problem, shelf: PictureShelf) -> Calibration:
+    """What was found and chosen as the lens and radius are stated, and then refined."""
+    solution, outlines, failures = _as_stated(cell, problem.unrefined(), shelf)
+    if problem.refine:
+        solution = problem.solved(outlines, failures)
+    return solution.calibration
+
+
+def _as_stated(
+    cell: Cell, problem: Problem, shelf: PictureShelf
+) -> tuple[Solution, Outlines, Failures]:
     outlines, failures = look_for_each(cell, shelf)
     solution = None
     if not has_twins(cell.sightings, outlines, problem.duplicates):
@@ -84,11 +94,11 @@ def _calibrated(cell: Cell, problem: Problem, shelf: PictureShelf) -> Calibratio
         solution, outlines, failures = _by_choice(cell, problem, shelf, outlines, failures)
     wanted = solution.expected_again(problem.duplicates)
     if wanted and (again := look_again(cell, shelf, wanted)):
-        outlines = [again.get(i, outline) for i, outline in enumerate(outlines)]
-        failures = {i: why for i, why in failures.items() if i not in again}
-        if not has_twins(cell.sightings, outlines, problem.duplicates):
-            solution = problem.solved(outlines, failures)
-    return solution.calibration
+        mended = [again.get(i, outline) for i, outline in enumerate(outlines)]
+        if not has_twins(cell.sightings, mended, problem.duplicates):
+            failures = {i: why for i, why in failures.items() if i not in again}
+            return problem.solved(mended, failures), mended, failures
+    return solution, outlines, failures
 
 
 def _by_choice(
