@@ -73,6 +73,16 @@ def calibrate_outlines(
 
 
 def _calibrated(cell: Cell, problem: Problem, shelf: PictureShelf) -> Calibration:
+    """What was found and chosen as the lens and radius are stated, and then refined."""
+    solution, outlines, failures = _as_stated(cell, problem.unrefined(), shelf)
+    if problem.refine:
+        solution = problem.solved(outlines, failures)
+    return solution.calibration
+
+
+def _as_stated(
+    cell: Cell, problem: Problem, shelf: PictureShelf
+) -> tuple[Solution, Outlines, Failures]:
     outlines, failures = look_for_each(cell, shelf)
     solution = None
     if not has_twins(cell.sightings, outlines, problem.duplicates):
@@ -84,11 +94,12 @@ def _calibrated(cell: Cell, problem: Problem, shelf: PictureShelf) -> Calibratio
         solution, outlines, failures = _by_choice(cell, problem, shelf, outlines, failures)
     wanted = solution.expected_again(problem.duplicates)
     if wanted and (again := look_again(cell, shelf, wanted)):
-        outlines = [again.get(i, outline) for i, outline in enumerate(outlines)]
-        failures = {i: why for i, why in failures.items() if i not in again}
-        if not has_twins(cell.sightings, outlines, problem.duplicates):
+        mended = [again.get(i, outline) for i, outline in enumerate(outlines)]
+        if not has_twins(cell.sightings, mended, problem.duplicates):
+            failures = {i: why for i, why in failures.items() if i not in again}
+            outlines = mended
             solution = problem.solved(outlines, failures)
-    return _measured_closely(cell, problem, shelf, solution, outlines, failures).calibration
+    return _measured_closely(cell, problem, shelf, solution, outlines, failures)
 
 
 def _measured_closely(
@@ -98,24 +109,26 @@ def _measured_closely(
     solution: Solution,
     outlines: Outlines,
     failures: Failures,
-) -> Solution:
+) -> tuple[Solution, Outlines, Failures]:
     """The pose from outlines measured where all sightings together have them.
 
     What hides a part of one ball pulls its outline less when its place is known. The pose stays as
     it was where the closer look is not believed as much.
     """
+    before = solution, outlines, failures
     closer = look_again(cell, shelf, solution.expected_everywhere(problem.duplicates), closely=True)
-    if not closer:
-        return solution
     outlines = [closer.get(i, outline) for i, outline in enumerate(outlines)]
     failures = {i: why for i, why in failures.items() if i not in closer}
+    if not closer or has_twins(cell.sightings, outlines, problem.duplicates):
+        return before
     try:
         closely = problem.solved(outlines, failures)
     except MonocellError:
-        return solution
-    before, after = solution.calibration, closely.calibration
-    worse = after.verdict == "failed" or after.count_used < before.count_used
-    return solution if worse else closely
+        return before
+    worse = closely.calibration.count_used < solution.calibration.count_used
+    if worse or closely.calibration.verdict == "failed":
+        return before
+    return closely, outlines, failures
 
 
 def _by_choice(

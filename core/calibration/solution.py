@@ -81,6 +81,10 @@ class Problem:
         duplicates = told_twice(cell.sightings)
         return Problem(cell.camera, cell.sightings, places, method, refine, cell.mount, duplicates)
 
+    def unrefined(self) -> Problem:
+        """The same without refining anything."""
+        return replace(self, refine=())
+
     def enough(self, outlines: Sequence[SphereOutline | None]) -> bool:
         """Whether so many balls, and all points, can make a pose."""
         found = self._found(outlines)

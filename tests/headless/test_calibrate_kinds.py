@@ -48,7 +48,7 @@ def test_an_offset_in_the_flange_is_solved_and_told(run, job):
     name = edited(job, on_the_flange)
     code, out, _ = run("calibrate", name)
     assert code == 0
-    assert "solved    the offset in the flange is at (0.03" in out
+    assert "solved     the offset in the flange is at (0.03" in out
     _, out, _ = run("calibrate", name, "--json")
     solved = told_json(out)
     np.testing.assert_allclose(solved["offsets"][0]["offset"], OFFSET, atol=0.01)
@@ -59,7 +59,7 @@ def test_a_camera_on_the_flange_is_written_under_its_own_name(run, job):
     name = edited(job, mounted)
     code, out, err = run("calibrate", name, "--out", "done.cell.json")
     assert code == 0, err
-    assert "mounted   on the flange" in out
+    assert "mounted    on the flange" in out
     assert "mount.world_from_flange of the cell's picture is missing" in err
     done = json.loads((job / "done.cell.json").read_text())
     assert "camera_from_world" not in done["camera"]
@@ -89,7 +89,7 @@ def test_clicks_stand_in_for_balls(run, job):
 
     code, out, _ = run("calibrate", edited(job, clicked))
     assert code == 0
-    assert "camera at (1.5" in out or "camera at (1.4" in out
+    assert "camera     at (1.5" in out or "camera     at (1.4" in out
 
 
 def test_a_refined_radius_is_told_and_written(run, job):
@@ -102,7 +102,7 @@ def test_a_refined_radius_is_told_and_written(run, job):
     assert "the ball's radius seems to be" in err
     code, out, _ = run("calibrate", name, "--refine", "radius", "--out", "done.cell.json")
     assert code == 0
-    assert "refined   radius -4." in out
+    assert "refined    radius -4." in out
     done = json.loads((job / "done.cell.json").read_text())
     assert done["sightings"][0]["radius"] == pytest.approx(0.04, rel=0.01)
 
