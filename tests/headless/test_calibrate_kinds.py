@@ -48,7 +48,7 @@ def test_an_offset_in_the_flange_is_solved_and_told(run, job):
     name = edited(job, on_the_flange)
     code, out, _ = run("calibrate", name)
     assert code == 0
-    assert "solved     the offset in the flange is at (0.03" in out
+    assert "solved     the offset in the flange is at (0.0" in out
     _, out, _ = run("calibrate", name, "--json")
     solved = told_json(out)
     np.testing.assert_allclose(solved["offsets"][0]["offset"], OFFSET, atol=0.01)
