@@ -25,8 +25,11 @@ from .observation import Observation
 from .unknowns import BIAS, Columns, Refinable, State, Unknowns
 
 REWEIGHTINGS, REBALANCINGS = 3, 3
-# below this factor chance alone makes sightings disagree, and their own weights are the best
-WORTH_REBALANCING = 1.3
+# an outline that keeps less than this share of its weight is in another place
+MOST_LOST = 0.5
+# below this factor outlines that are worse than they state make sightings disagree as well as
+# places do, and their own weights are the better ones; found on pictures with noise and fingers
+WORTH_REBALANCING = 2.5
 # and above this one something is wrong that no robot's error is
 LOST = 30.0
 
@@ -80,16 +83,32 @@ def _whitened(
 
 
 def _weights(measured: Measured, columns: Columns, weights: Array) -> Array:
-    """Tukey's weights of each outline against itself, wherever the others would have it.
+    """Tukey's weights of each outline's points against the pose that all agree on.
 
-    Else a ball in a wrong place would be voted down point by point, and nobody told.
+    What hides a part of a ball pulls the edges beside it, which the others tell. But an outline
+    that loses most of its weight that way is of a ball in a wrong place: it is weighed against
+    itself, or else it would be voted down point by point and nobody told.
     """
-    grams = grams_of(measured, columns, weights)
-    moves = np.array([np.linalg.lstsq(g[:3, :3], g[:3, -1], rcond=1e-12)[0] for g in grams])
-    own = columns.residual_pixels - np.einsum("ni,ni->n", columns.by_centre, moves[measured.owner])
-    scaled = own / measured.sigma_pixels
     count = len(measured.radii)
     if not count:
         return weights
-    outlines = tukey_weights(scaled[:count], max(1.0, robust_sigma(scaled[:count])))
-    return np.concatenate([outlines, np.ones(len(scaled) - count)])
+    scaled = (columns.residual_pixels / measured.sigma_pixels)[:count]
+    moves = _own_moves(measured, columns, weights)
+    by_move = np.einsum("ni,ni->n", columns.by_centre[:count], moves[measured.owner[:count]])
+    own = _tukey(scaled - by_move / measured.sigma_pixels[:count])
+    agreed = _tukey(scaled)
+    left, kept = (
+        np.bincount(measured.owner[:count], w, minlength=len(measured.rows)) for w in (agreed, own)
+    )
+    displaced = (left < MOST_LOST * kept)[measured.owner[:count]]
+    return np.concatenate([np.where(displaced, own, agreed), weights[count:]])
+
+
+def _own_moves(measured: Measured, columns: Columns, weights: Array) -> Array:
+    """Where each sighting alone would have its target, (S, 3) from where it is expected."""
+    grams = grams_of(measured, columns, weights)
+    return np.array([np.linalg.lstsq(g[:3, :3], g[:3, -1], rcond=1e-12)[0] for g in grams])
+
+
+def _tukey(scaled: Array) -> Array:
+    return tukey_weights(scaled, max(1.0, robust_sigma(scaled)))

@@ -92,6 +92,8 @@ def _pays(seen: Sequence[Seen], best: ConsistentFit, together: ConsistentFit) ->
     has to be plain: the sightings left out are not even roughly where they should be.
     """
     left_out = np.flatnonzero(~best.used)
+    if not len(left_out):
+        return best.fit.chi_squared < together.fit.chi_squared
     plain = best.off_pixels[left_out] > ODD_PIXELS
     if 2 * best.used.sum() - 6 - 3 * len(best.fit.targets) < LEFT_TO_CHECK:
         centres = best.start.centres([seen[i].place for i in left_out])
