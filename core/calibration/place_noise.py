@@ -40,7 +40,9 @@ def place_sigma(grams: Array, allowed: Array, across: int) -> float:
 def own_pulls(grams: Array, allowed: Array) -> Array:
     """Chi-squared (S,) of where each sighting alone would rather have its target."""
     rather, covariances = _own_moves(grams, allowed)
-    pulls: Array = np.einsum("si,si->s", rather, np.linalg.solve(covariances, rather))
+    # a column each: NumPy 2 would take the rows of (S, 3) for one matrix
+    towards = np.linalg.solve(covariances, rather[..., None])[..., 0]
+    pulls: Array = np.einsum("si,si->s", rather, towards)
     return pulls
 
 

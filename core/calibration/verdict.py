@@ -29,15 +29,17 @@ def verdict_of(
     lens: Intrinsics,
     fit: JointFit,
     geometry: PositionGeometry,
-    sightings: Sequence[tuple[str, str]],
+    sightings: Sequence[tuple[str, str, bool]],
     radius: float | None,
 ) -> tuple[Verdict, tuple[str, ...]]:
-    """The verdict, and what to tell the user; `sightings` are pairs of status and reason.
+    """The verdict, and what to tell the user.
 
-    `radius` is that of the balls, None where there are only points.
+    `sightings` are status, reason, and whether something was found; `radius` is that of the balls,
+    None where there are only points.
     """
-    rejected = [reason for status, reason in sightings if status == "rejected"]
-    doubtful = [reason for status, reason in sightings if status == "doubtful"]
+    rejected = [reason for status, reason, _ in sightings if status == "rejected"]
+    doubtful = [reason for status, reason, _ in sightings if status == "doubtful"]
+    elsewhere = sum(status == "rejected" and found for status, _, found in sightings)
     kept = len(sightings) - len(rejected)
     doubts = _doubts(lens, fit, radius)
     # each sighting tells a direction well: two numbers
@@ -45,7 +47,7 @@ def verdict_of(
     if unchecked:
         doubts.append(_nothing_to_check_with(kept))
     # any three positions have a mirror image that fits as well: against two that object, they lose
-    lonely = unchecked and len(rejected) >= 2
+    lonely = (unchecked and len(rejected) >= 2) or elsewhere >= kept
     if lonely:
         doubts.append(f"only {kept} of {len(sightings)} sightings agree, too few against the rest")
     warnings = (
