@@ -51,18 +51,19 @@ def fit_pose(
     measured = Measured.of(observations)
     unknowns = Unknowns.of_places([o.place for o in observations], refine)
     state = State(start, np.zeros((0, 3)) if offsets is None else np.asarray(offsets, dtype=float))
-    weights = np.ones(len(measured.sigma_pixels))
+    weights = own = np.ones(len(measured.sigma_pixels))
     for _ in range(REWEIGHTINGS):
         evaluate = partial(_whitened, measured=measured, unknowns=unknowns, weights=weights)
         state = levenberg_marquardt(state, evaluate, unknowns.moved).value
         columns = _columns(measured, unknowns, state)
-        weights = _weights(measured, columns, weights)
-    stand = Stand.at(state, observations, measured, unknowns, weights)
+        weights, own = _weights(measured, columns, weights)
+    # against the common pose a displaced outline would lose what shows that it is displaced
+    stand = Stand.at(state, observations, measured, unknowns, own)
     for _ in range(REBALANCINGS):
         if not WORTH_REBALANCING < stand.disagreement < LOST:
             break
         # places that are off count alike, however sharp their outlines are
-        stand = Stand.at(stand.improved(), observations, measured, unknowns, weights)
+        stand = Stand.at(stand.improved(), observations, measured, unknowns, own)
     return stand.fit()
 
 
@@ -82,8 +83,8 @@ def _whitened(
     return residuals, np.vstack([rows, prior])
 
 
-def _weights(measured: Measured, columns: Columns, weights: Array) -> Array:
-    """Tukey's weights of each outline's points against the pose that all agree on.
+def _weights(measured: Measured, columns: Columns, weights: Array) -> tuple[Array, Array]:
+    """Tukey's weights of each outline's points against the pose that all agree on, and its own.
 
     What hides a part of a ball pulls the edges beside it, which the others tell. But an outline
     that loses most of its weight that way is of a ball in a wrong place: it is weighed against
@@ -91,7 +92,7 @@ def _weights(measured: Measured, columns: Columns, weights: Array) -> Array:
     """
     count = len(measured.radii)
     if not count:
-        return weights
+        return weights, weights
     scaled = (columns.residual_pixels / measured.sigma_pixels)[:count]
     moves = _own_moves(measured, columns, weights)
     by_move = np.einsum("ni,ni->n", columns.by_centre[:count], moves[measured.owner[:count]])
@@ -101,7 +102,9 @@ def _weights(measured: Measured, columns: Columns, weights: Array) -> Array:
         np.bincount(measured.owner[:count], w, minlength=len(measured.rows)) for w in (agreed, own)
     )
     displaced = (left < MOST_LOST * kept)[measured.owner[:count]]
-    return np.concatenate([np.where(displaced, own, agreed), weights[count:]])
+    points = weights[count:]
+    together = np.concatenate([np.where(displaced, own, agreed), points])
+    return together, np.concatenate([own, points])
 
 
 def _own_moves(measured: Measured, columns: Columns, weights: Array) -> Array:
