@@ -76,6 +76,12 @@ class Places:
             weight *= LEAST_WEIGHT + (1 - LEAST_WEIGHT) * min(1.0, share / CHANGED)
         return weight
 
+    def moved(self, circle: Circle) -> bool:
+        """Whether most of a circle's inside differs from the background that was given."""
+        if self._changed is None:
+            return False
+        return float(change_shares(self._changed, [circle])[0]) > CHANGED
+
     def doubts(self, circle: Circle) -> tuple[str, ...]:
         """What to tell of a ball that does not fit the hints."""
         told = []

@@ -15,6 +15,7 @@ from .candidates import Places, Window, clipped, evidence_of, size_pixels
 from .circle_votes import Circle
 from .hints import FindHints
 from .outline import OutlineMeter, SphereOutline
+from .outline_checks import far_doubts
 from .ring_edges import NARROW, WIDE, Pyramid
 from .ring_search import RoughSphere, circle_of, search_rings
 from .roundness import refuse_ellipse
@@ -24,6 +25,7 @@ from .sphere import sphere_at
 MEASURED, SPARE = 4, 3
 # of the voted circles, how many are measured where the rough search sees none
 AS_VOTED, AS_VOTED_EVIDENCE = 16, 10.5
+MOVED_EVIDENCE = 2.5
 # an outline this clear ends the search: what is left had less agreement already
 CLEAR_EVIDENCE, CLEAR_COVERAGE = 8.0, 0.45
 # in a window the strongest circles are tried before all are compared
@@ -39,8 +41,6 @@ FAINT_REFUSED, FAINT_DOUBTED, HALF_SEEN = 6.5, 9.0, 0.6
 SMALL_REFUSED, MOSTLY_SEEN, HALF_REFUSED = 5.5, 0.7, 7.9
 # edges of a texture make loose circles, by their radius, or circles that most edges are not on
 LOOSE_SHARE, FEW_USED = 0.05, 0.45
-# no camera of a work cell is that many metres from its ball
-FARTHEST = 100.0
 # around the rough outline, as a share of its radius and in pixels, what the fine measurement sees
 CROP_SHARE, CROP_PIXELS = 1.25, 14.0
 
@@ -93,10 +93,12 @@ def measure_sphere(
     rough_centre_camera: Array,
     *,
     predicted: bool = False,
+    beforehand: float = 0.0,
 ) -> SphereOutline:
     """The ball near a known place (3,) in the camera frame, to a few pixels.
 
     A place `predicted` by a pose is known to a fraction of a pixel, and searched as closely.
+    `beforehand` are sigmas of evidence for a ball there that the outline does not have to bring.
 
     Raises SphereNotFound and SphereCut, as `find_spheres`.
     """
@@ -107,7 +109,7 @@ def measure_sphere(
     )
     light = linear_light(np.ascontiguousarray(picture[top : top + height, left : left + width]))
     meter = OutlineMeter(light, np.array([left, top], dtype=float), intrinsics, radius)
-    return meter.measure(rough_centre_camera, predicted=predicted)
+    return meter.measure(rough_centre_camera, predicted=predicted, beforehand=beforehand)
 
 
 class _Search:
@@ -220,9 +222,18 @@ class _Search:
 
     def _believed(self, rough: RoughSphere) -> SphereOutline:
         """The measured outline with what speaks against it. Raises SphereNotFound."""
-        outline = measure_sphere(self._picture, self._intrinsics, self._radius, rough.centre_camera)
+        # fewer circles lie where something moved, and fewer of them look like balls by chance
+        beforehand = MOVED_EVIDENCE if self._places.moved(rough.circle) else 0.0
+        outline = measure_sphere(
+            self._picture,
+            self._intrinsics,
+            self._radius,
+            rough.centre_camera,
+            beforehand=beforehand,
+        )
         self._places.refuse_size(size_pixels(self._intrinsics, outline))
-        doubts = (*self._faint(outline), *_far(outline))
+        doubts = self._faint(outline, outline.evidence + beforehand)
+        doubts += far_doubts(float(np.linalg.norm(outline.centre_camera)), self._radius)
         if outline.coverage < WHOLE_COVERAGE:
             circle, centre = self._circle(outline), outline.centre_camera
             refuse_ellipse(self._pyramid, self._intrinsics, circle, centre, self._radius)
@@ -230,17 +241,17 @@ class _Search:
             doubts = (*doubts, *self._places.doubts(self._circle(outline)))
         return replace(outline, warnings=(*outline.warnings, *doubts)) if doubts else outline
 
-    def _faint(self, outline: SphereOutline) -> tuple[str, ...]:
+    def _faint(self, outline: SphereOutline, evidence: float) -> tuple[str, ...]:
         """Doubts that a whole picture raises. Raises SphereNotFound for an outline too faint."""
         if self._window is not None:
             return ()
-        faint = outline.evidence < FAINT_DOUBTED
+        faint = evidence < FAINT_DOUBTED
         loose = outline.rms_pixels > LOOSE_SHARE * size_pixels(self._intrinsics, outline)
         loose |= float(outline.used.mean()) < FEW_USED
         least = SMALL_REFUSED if outline.coverage > MOSTLY_SEEN else FAINT_REFUSED
         if outline.coverage < HALF_SEEN:
             least = HALF_REFUSED
-        if outline.evidence < least or (faint and loose):
+        if evidence < least or (faint and loose):
             raise SphereNotFound(
                 f"the best outline stands out by {outline.evidence:.1f} sigmas only "
                 f"({outline.rms_pixels:.1f} px rms), as some of the many circles of a whole "
@@ -286,13 +297,3 @@ class _Search:
             f"no ball found {where}: no outline of one{self._places.of_size} stands out; {advice} "
             "all of it with more contrast"
         )
-
-
-def _far(outline: SphereOutline) -> tuple[str, ...]:
-    distance = float(np.linalg.norm(outline.centre_camera))
-    if distance < FARTHEST:
-        return ()
-    return (
-        f"a ball of radius {outline.radius:g} m would be {distance:.0f} m away: is the radius in "
-        "metres?",
-    )

@@ -96,11 +96,14 @@ class OutlineMeter:
         self._ring = OutlineRing(light, origin, intrinsics, radius)
         self._intrinsics, self._radius = intrinsics, radius
 
-    def measure(self, rough_centre: Array, *, predicted: bool = False) -> SphereOutline:
+    def measure(
+        self, rough_centre: Array, *, predicted: bool = False, beforehand: float = 0.0
+    ) -> SphereOutline:
         """The sphere whose outline lies near that of `rough_centre` (3,), in the camera frame.
 
         A centre `predicted` from the ball's other places is good to a fraction of a pixel: edges
         are sought near it only, and an arc that would need a ball of another size is none of it.
+        `beforehand` are sigmas of evidence that there is a ball, before any edge is looked at.
 
         Raises SphereNotFound when too little of the outline has an edge where it should be, and
         SphereCut when too much of it lies outside the picture.
@@ -125,7 +128,14 @@ class OutlineMeter:
         coverage, evidence = self._coverage(centre + agreement.move, blur, contrast)
         agreed = agreement.residual_pixels[agreement.weights > USED_WEIGHT]
         size = self._ring.size_pixels(centre)
-        refuse_clutter(evidence, coverage, core_sigma(agreed), size, predicted=predicted)
+        refuse_clutter(
+            evidence,
+            coverage,
+            core_sigma(agreed),
+            size,
+            predicted=predicted,
+            beforehand=beforehand,
+        )
         return self._judged(seen, agreement, blur, coverage, evidence)
 
     def _expected(self, centre: Array) -> Expectation:

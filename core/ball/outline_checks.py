@@ -7,6 +7,8 @@ from ..errors import SphereCut, SphereNotFound
 
 LEAST_COVERAGE, DOUBTFUL_COVERAGE = 0.35, 0.5
 LARGEST_CUT = 0.25
+# no camera of a work cell is that many metres from its ball
+FARTHEST = 100.0
 SMALLEST_PIXELS, FEWEST_USED = 4.0, 8
 # sigmas over chance that an outline has to stand out by, and by which it may be loose
 LEAST_EVIDENCE, EVIDENCE_IN_PART, EVIDENCE_IF_LOOSE, LOOSE_SHARE = 8.0, 9.0, 10.0, 0.025
@@ -54,9 +56,18 @@ def refuse_few(used: int, of: int) -> None:
 
 
 def refuse_clutter(
-    evidence: float, coverage: float, rms: float, size: float, *, predicted: bool
+    evidence: float,
+    coverage: float,
+    rms: float,
+    size: float,
+    *,
+    predicted: bool,
+    beforehand: float = 0.0,
 ) -> None:
-    """Edges of a texture agree with some circle too, but by less, not as well, or in part."""
+    """Edges of a texture agree with some circle too, but by less, not as well, or in part.
+
+    `beforehand` are sigmas of evidence that something else gives, as that the place has changed.
+    """
     least = LEAST_EVIDENCE
     if coverage < DOUBTFUL_COVERAGE:
         least = EVIDENCE_IN_PART
@@ -64,7 +75,7 @@ def refuse_clutter(
         least = EVIDENCE_IF_LOOSE
     if predicted:
         least = LEAST_EVIDENCE_WHERE_PREDICTED
-    if evidence < least:
+    if evidence + beforehand < least:
         raise SphereNotFound(
             f"the edges make a circle of {size:.0f} px radius only {evidence:.1f} sigmas better "
             f"than chance ({least:g} are needed), {rms:.1f} px rms off it, and "
@@ -82,3 +93,12 @@ def doubts_of(coverage: float, cut: float, rms: float, size: float) -> tuple[str
     if rms > max(0.5, 0.01 * size):
         doubts.append(f"the outline is {rms:.2f} px rms off a sphere's: is it round?")
     return tuple(doubts)
+
+
+def far_doubts(distance: float, radius: float) -> tuple[str, ...]:
+    """What to tell of a ball that is farther than any camera of a cell can be."""
+    if distance < FARTHEST:
+        return ()
+    return (
+        f"a ball of radius {radius:g} m would be {distance:.0f} m away: is the radius in metres?",
+    )
