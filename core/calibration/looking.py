@@ -21,6 +21,7 @@ from .candidate_choice import choose_candidates, outlines_of
 from .observation import Place
 from .scenery import Scenery
 from .seen import Seen, seen_targets
+from .sighting_report import NOT_FITTING
 
 # beside the balls that sightings tell of, a picture shows other round things
 CANDIDATES, MORE_CANDIDATES = 4, 3
@@ -62,7 +63,7 @@ def look_for_all(
     ]
     chosen = outlines_of(choose_candidates(seen, [s.picture for s in cell.sightings]))
     failures = {
-        i: "what was found does not fit the others" if candidates[i] else "no ball found"
+        i: NOT_FITTING if candidates[i] else "no ball found"
         for i, sighting in enumerate(cell.sightings)
         if chosen[i] is None and isinstance(sighting, SphereSighting)
     }

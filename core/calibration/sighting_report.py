@@ -16,6 +16,8 @@ from .contradictions import mixed_up
 from .pose_search import ConsistentFit
 from .seen import Seen
 
+# of a ball that was found, but where no common pose has it
+NOT_FITTING = "what was found does not fit the others"
 Status = Literal["used", "doubtful", "rejected"]
 # the mean square of normal errors over the median square: a robust rms
 SQUARE_OVER_MEDIAN = 2.198
@@ -40,6 +42,13 @@ class SightingReport:
     off_pixels: float
     off_millimetres: float
     outline: SphereOutline | None
+
+    @property
+    def contradicts(self) -> bool:
+        """Whether its ball was found, and somewhere else than the pose has it."""
+        return self.status == "rejected" and (
+            self.outline is not None or self.reason == NOT_FITTING
+        )
 
 
 def sighting_reports(

@@ -145,7 +145,7 @@ class Problem:
         camera, mount = self._placed(fit.camera_from_base, fit.covariance, used, fit.refined)
         geometry = check_positions(fit.places_base)
         radii = [s.radius for s in self.sightings if isinstance(s, SphereSighting)]
-        statuses = [(r.status, r.reason, r.outline is not None) for r in reports]
+        statuses = [(r.status, r.reason, r.contradicts) for r in reports]
         radius = radii[0] if radii else None
         verdict, warnings = verdict_of(camera.intrinsics, fit, geometry, statuses, radius)
         return Calibration(

@@ -34,12 +34,12 @@ def verdict_of(
 ) -> tuple[Verdict, tuple[str, ...]]:
     """The verdict, and what to tell the user.
 
-    `sightings` are status, reason, and whether something was found; `radius` is that of the balls,
+    `sightings` are status, reason, and whether the ball was found elsewhere; `radius` is the balls',
     None where there are only points.
     """
     rejected = [reason for status, reason, _ in sightings if status == "rejected"]
     doubtful = [reason for status, reason, _ in sightings if status == "doubtful"]
-    elsewhere = sum(status == "rejected" and found for status, _, found in sightings)
+    elsewhere = sum(contradicts for _, _, contradicts in sightings)
     kept = len(sightings) - len(rejected)
     doubts = _doubts(lens, fit, radius)
     # each sighting tells a direction well: two numbers
