@@ -34,8 +34,8 @@ def verdict_of(
 ) -> tuple[Verdict, tuple[str, ...]]:
     """The verdict, and what to tell the user.
 
-    `sightings` are status, reason, and whether the ball was found elsewhere; `radius` is the balls',
-    None where there are only points.
+    `sightings` are status, reason, and whether the ball was found elsewhere; `radius` is that of
+    the balls, None where there are only points.
     """
     rejected = [reason for status, reason, _ in sightings if status == "rejected"]
     doubtful = [reason for status, reason, _ in sightings if status == "doubtful"]
