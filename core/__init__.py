@@ -11,9 +11,11 @@ from .cell import Cell
 from .distortion import Distortion
 from .errors import MonocellError
 from .intrinsics import Intrinsics
+from .motion import Motion
 from .pose import Pose
-from .primitives import Box, Cylinder, Primitive
+from .primitives import Box, Cone, Cylinder, Primitive, Prism, Sphere, Tube
 from .reference import ReferenceLine, ReferencePlane
+from .relation import Relation
 from .sighting import SphereSighting
 from .sketch import Sketch
 
@@ -22,14 +24,20 @@ __all__ = [
     "Box",
     "Camera",
     "Cell",
+    "Cone",
     "Cylinder",
     "Distortion",
     "Intrinsics",
     "MonocellError",
+    "Motion",
     "Pose",
     "Primitive",
+    "Prism",
     "ReferenceLine",
     "ReferencePlane",
+    "Relation",
     "Sketch",
+    "Sphere",
     "SphereSighting",
+    "Tube",
 ]

@@ -1,73 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The metric objects of a virtual environment: where each stands, its sizes, and their error."""
+"""The solids that a cell is modelled with: box, cylinder, sphere, cone, tube and prism."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
-from .appearance import Appearance
-from .arrays import Array, frozen, positive
-from .covariance import checked_covariance
+from .arrays import Array, finite, frozen, positive
 from .errors import InvalidValue
-from .pose import Pose
+from .primitive import Picks, Primitive
 
-# picks as the document holds them: a role ("base", "top", ...) to a list of pixels
-Picks = Mapping[str, Any]
-
-
-@dataclass(frozen=True, eq=False)
-class Primitive:
-    """What all primitives share.
-
-    The object's frame is at its centre of volume, z along its axis or height. `on` names the
-    reference it stands on. `picks` are the operator's pixels, kept so that the object can be solved
-    again after a better calibration; `known` are the sizes that were typed, not solved.
-
-    `covariance` is on (twist of `world_from_object` as in `Pose.perturbed` but with the rotation
-    taken about the object's own centre, then the sizes in order): its first three rows are the
-    rotation vector in world axes (radians), the next three the centre's position (metres).
-    """
-
-    name: str
-    world_from_object: Pose
-    on: str | None = field(default=None, kw_only=True)
-    picks: Picks = field(default_factory=dict, kw_only=True)
-    known: Mapping[str, float] = field(default_factory=dict, kw_only=True)
-    appearance: Appearance | None = field(default=None, kw_only=True)
-    covariance: Array | None = field(default=None, kw_only=True)
-
-    kind: ClassVar[str]
-    size_names: ClassVar[tuple[str, ...]]
-
-    def __post_init__(self) -> None:
-        if not self.name:
-            raise InvalidValue("name: an object needs a name that is not empty")
-        if self.covariance is not None:
-            rows = 6 + len(self.size_names)
-            matrix = checked_covariance(self.covariance, rows, f"{self.name}: covariance")
-            object.__setattr__(self, "covariance", matrix)
-
-    @property
-    def sizes(self) -> Array:
-        """The sizes in the order of `size_names`, metres."""
-        raise NotImplementedError
-
-    @property
-    def half_extent(self) -> Array:
-        """Half of the bounding box in the object's own frame, (3,) in metres."""
-        raise NotImplementedError
-
-    def position_sigma(self) -> Array | None:
-        """1 sigma of the centre along the world axes, (3,) in metres."""
-        return None if self.covariance is None else np.sqrt(np.diag(self.covariance)[3:6])
-
-    def size_sigma(self) -> Array | None:
-        """1 sigma of each size, metres."""
-        return None if self.covariance is None else np.sqrt(np.diag(self.covariance)[6:])
+# twice a polygon's area over its squared extent, below which it is no more than a line
+THINNEST_POLYGON = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,11 +26,11 @@ class Box(Primitive):
     size_names = ("size_x", "size_y", "size_z")
 
     def __post_init__(self) -> None:
-        super().__post_init__()
         size = frozen(self.size, (3,), f"{self.name}: size")
         if (size <= 0).any():
             raise InvalidValue(f"{self.name}: size must be above zero, got {size.tolist()}")
         object.__setattr__(self, "size", size)
+        super().__post_init__()
 
     @property
     def sizes(self) -> Array:
@@ -93,6 +39,9 @@ class Box(Primitive):
     @property
     def half_extent(self) -> Array:
         return self.size / 2
+
+    def with_parameters(self, parameters: Array) -> Self:
+        return replace(self, size=parameters)
 
     def corners_world(self) -> Array:
         """The eight corners (8, 3) in the world: bit 0, 1, 2 of the index chooses +x, +y, +z."""
@@ -111,14 +60,165 @@ class Cylinder(Primitive):
     size_names = ("radius", "height")
 
     def __post_init__(self) -> None:
+        _check_sizes(self, self.size_names)
         super().__post_init__()
-        for name in self.size_names:
-            object.__setattr__(self, name, positive(getattr(self, name), f"{self.name}: {name}"))
-
-    @property
-    def sizes(self) -> Array:
-        return np.array([self.radius, self.height])
 
     @property
     def half_extent(self) -> Array:
         return np.array([self.radius, self.radius, self.height / 2])
+
+
+@dataclass(frozen=True, eq=False)
+class Sphere(Primitive):
+    """A ball of `radius` metres about its origin."""
+
+    radius: float = field(kw_only=True)
+
+    kind = "sphere"
+    size_names = ("radius",)
+
+    def __post_init__(self) -> None:
+        _check_sizes(self, self.size_names)
+        super().__post_init__()
+
+    @property
+    def half_extent(self) -> Array:
+        return np.full(3, self.radius)
+
+
+@dataclass(frozen=True, eq=False)
+class Cone(Primitive):
+    """A circular cone or frustum: `radius` at z = -height/2, `top_radius` at z = +height/2.
+
+    `top_radius` is 0 for a cone that ends in a point, and may be the larger of the two.
+    """
+
+    radius: float = field(kw_only=True)
+    top_radius: float = field(default=0.0, kw_only=True)
+    height: float = field(kw_only=True)
+
+    kind = "cone"
+    size_names = ("radius", "top_radius", "height")
+
+    def __post_init__(self) -> None:
+        _check_sizes(self, ("radius", "height"))
+        top = finite(self.top_radius, f"{self.name}: top_radius")
+        if top < 0:
+            raise InvalidValue(f"{self.name}: top_radius must not be below zero, got {top:g}")
+        object.__setattr__(self, "top_radius", top)
+        super().__post_init__()
+
+    @property
+    def half_extent(self) -> Array:
+        widest = max(self.radius, self.top_radius)
+        return np.array([widest, widest, self.height / 2])
+
+
+@dataclass(frozen=True, eq=False)
+class Tube(Primitive):
+    """A hollow cylinder, open at both ends: outer `radius`, `inner_radius`, `height`, metres."""
+
+    radius: float = field(kw_only=True)
+    inner_radius: float = field(kw_only=True)
+    height: float = field(kw_only=True)
+
+    kind = "tube"
+    size_names = ("radius", "inner_radius", "height")
+
+    def __post_init__(self) -> None:
+        _check_sizes(self, self.size_names)
+        if self.inner_radius >= self.radius:
+            raise InvalidValue(
+                f"{self.name}: inner_radius {self.inner_radius:g} leaves no wall inside a radius "
+                f"of {self.radius:g}"
+            )
+        super().__post_init__()
+
+    @property
+    def half_extent(self) -> Array:
+        return np.array([self.radius, self.radius, self.height / 2])
+
+
+@dataclass(frozen=True, eq=False)
+class Prism(Primitive):
+    """A polygon (N, 2) of the object's x-y plane, anticlockwise, extruded over `height` along z.
+
+    The frame's origin is the polygon's centre of area, half way up: a polygon given about another
+    point is refused (`Prism.around` moves it). Its parameters are the height and then x0, y0, x1...
+    """
+
+    polygon: Array = field(kw_only=True)
+    height: float = field(kw_only=True)
+
+    kind = "prism"
+    size_names = ("height",)
+
+    def __post_init__(self) -> None:
+        _check_sizes(self, self.size_names)
+        polygon = frozen(self.polygon, (None, 2), f"{self.name}: polygon")
+        _check_polygon(polygon, self.name)
+        away = float(np.linalg.norm(polygon_centre(polygon)))
+        if away > 1e-6 * float(np.abs(polygon).max()):
+            raise InvalidValue(
+                f"{self.name}: polygon: its centre of area lies {1e3 * away:.3g} mm from the "
+                "object's origin; move the origin there"
+            )
+        object.__setattr__(self, "polygon", polygon)
+        super().__post_init__()
+
+    @property
+    def parameters(self) -> Array:
+        return np.concatenate([[self.height], self.polygon.ravel()])
+
+    @property
+    def half_extent(self) -> Array:
+        return np.array([*np.abs(self.polygon).max(axis=0), self.height / 2])
+
+    def with_parameters(self, parameters: Array) -> Self:
+        """The polygon is taken about its own centre of area: its place is the pose's alone."""
+        polygon = np.asarray(parameters[1:], dtype=float).reshape(-1, 2)
+        centred = polygon - polygon_centre(polygon)
+        return replace(self, height=float(parameters[0]), polygon=centred)
+
+
+def polygon_centre(polygon: Array) -> Array:
+    """The centre of area (2,) of a simple polygon (N, 2) in order round."""
+    after = np.roll(polygon, -1, axis=0)
+    cross = polygon[:, 0] * after[:, 1] - polygon[:, 1] * after[:, 0]
+    centre: Array = ((polygon + after) * cross[:, None]).sum(axis=0) / (3 * cross.sum())
+    return centre
+
+
+def _check_sizes(thing: Primitive, names: tuple[str, ...]) -> None:
+    for name in names:
+        object.__setattr__(thing, name, positive(getattr(thing, name), f"{thing.name}: {name}"))
+
+
+def _check_polygon(polygon: Array, name: str) -> None:
+    if len(polygon) < 3:
+        raise InvalidValue(f"{name}: polygon: {len(polygon)} corners make no prism; give three")
+    after = np.roll(polygon, -1, axis=0)
+    double_area = float((polygon[:, 0] * after[:, 1] - polygon[:, 1] * after[:, 0]).sum())
+    if double_area <= THINNEST_POLYGON * float(np.ptp(polygon, axis=0).max()) ** 2:
+        raise InvalidValue(
+            f"{name}: polygon: its corners lie on a line, cross, or go clockwise "
+            f"(area {5e5 * double_area:.3g} mm^2); give them anticlockwise seen from above"
+        )
+
+
+KINDS: dict[str, type[Primitive]] = {
+    kind.kind: kind for kind in (Box, Cylinder, Sphere, Cone, Tube, Prism)
+}
+
+__all__ = [
+    "KINDS",
+    "Box",
+    "Cone",
+    "Cylinder",
+    "Picks",
+    "Primitive",
+    "Prism",
+    "Sphere",
+    "Tube",
+    "polygon_centre",
+]

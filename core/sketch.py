@@ -9,25 +9,28 @@ from dataclasses import dataclass, field
 from .appearance import Appearance
 from .arrays import positive
 from .errors import InvalidValue
-from .primitives import Box, Cylinder, Picks, Primitive
-
-KINDS: dict[str, type[Primitive]] = {"box": Box, "cylinder": Cylinder}
+from .motion import Motion
+from .primitives import KINDS, Picks, Primitive
+from .relation import Relation
 
 
 @dataclass(frozen=True, eq=False)
 class Sketch:
-    """What the operator said of an object: its kind, its reference, pixels, and known sizes.
+    """What the operator said of an object: its kind, what holds it, pixels, and known sizes.
 
-    `known` maps size names (`height`, `radius`, `size_z`, ...) to metres that were measured or
-    typed and are not to be solved for.
+    `on` names the reference it stands on, None where other `relations` (or, of a ball, its known
+    radius alone) give its place. `known` maps size names (`height`, `radius`, `size_z`, ...) to
+    metres that were measured or typed and are not to be solved for.
     """
 
     name: str
     kind: str
-    on: str
+    on: str | None
     picks: Picks
     known: Mapping[str, float] = field(default_factory=dict)
     appearance: Appearance | None = None
+    relations: tuple[Relation, ...] = ()
+    motion: Motion = field(default_factory=Motion)
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -44,8 +47,17 @@ class Sketch:
     def of(thing: Primitive) -> Sketch:
         """The sketch a solved object came from, to solve it again after a better calibration.
 
-        Raises InvalidValue for an object without picks or reference.
+        Raises InvalidValue for an object without picks.
         """
-        if thing.on is None or not thing.picks:
-            raise InvalidValue(f"{thing.name}: has no picks on a reference to be solved from")
-        return Sketch(thing.name, thing.kind, thing.on, thing.picks, thing.known, thing.appearance)
+        if not thing.picks:
+            raise InvalidValue(f"{thing.name}: has no picks to be solved from")
+        return Sketch(
+            thing.name,
+            thing.kind,
+            thing.on,
+            thing.picks,
+            thing.known,
+            thing.appearance,
+            thing.relations,
+            thing.motion,
+        )

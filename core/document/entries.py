@@ -17,9 +17,9 @@ from ..distortion import Distortion
 from ..errors import DocumentError, InvalidValue
 from ..intrinsics import Intrinsics
 from ..pose import Pose
-from ..primitives import Box, Cylinder, Picks, Primitive
+from ..primitives import KINDS, Box, Cylinder, Picks, Primitive
 from ..reference import ReferenceLine, ReferencePlane
-from ..sketch import KINDS, Sketch
+from ..sketch import Sketch
 from .fields import Fields, items, keyed, number, shown, vector
 
 Entry = dict[str, Any]

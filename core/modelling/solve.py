@@ -66,7 +66,7 @@ def model_cell(cell: Cell, pick_sigma_pixels: float = 1.0) -> tuple[Cell, tuple[
             objects.append(thing)
             continue
         sketch = thing if isinstance(thing, Sketch) else Sketch.of(thing)
-        reference = cell.reference(sketch.on)
+        reference = cell.reference(sketch.on or "")
         modelled = solve_sketch(cell.standing_camera(), sketch, reference, pick_sigma_pixels)
         objects.append(modelled.object)
         results.append(modelled)

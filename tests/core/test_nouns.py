@@ -71,7 +71,7 @@ def test_sizes_and_their_sigmas_stand_in_the_order_of_their_names():
         (lambda: SphereSighting("a.png", [0, 0, 0], 0), "radius: must be above zero"),
         (lambda: SphereSighting("a.png", [0, 0, 0], 0.1, (0, 0, 5, 90)), "5 x 90 px is too small"),
         (lambda: SphereSighting("a.png", [0, 0, 0], 0.1, (0, 0, 5)), "window"),
-        (lambda: Sketch("s", "sphere", "floor", {}), "'sphere' is none of box, cylinder"),
+        (lambda: Sketch("s", "blob", "floor", {}), "'blob' is none of box, cylinder"),
         (lambda: Sketch("s", "box", "floor", {}, {"radius": 1}), "no size 'radius'"),
         (lambda: Sketch("s", "box", "floor", {}, {"size_x": 0}), "known size_x: must be above"),
     ],
