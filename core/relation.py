@@ -37,7 +37,7 @@ class Relation:
     | touches | it touches the plane or line (or its feature `own` lies on it) |
     | parallel | its axis (or `own`) is parallel to the direction of a line, or a plane's normal |
     | perpendicular | its axis (or `own`) is at a right angle to that direction |
-    | centred_on | its origin (or `own`) lies on the line, or on the normal through a face's middle |
+    | centred_on | its origin (or `own`) lies on the line, or the normal through a face's middle |
     | same_size | all its sizes (or the one named by `own`) are the other's |
     | symmetric | it is the other's mirror image in the plane `about` |
     """
