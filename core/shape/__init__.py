@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pure geometry of the solids: faces, edges and outlines, rays that hit them, triangles."""
+"""Pure geometry of the solids: their edges and outlines, rays against them, faces and axes."""
