@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The looks of a cell's objects: cell and picture in, colour and face pictures of each object out."""
+"""The looks of a cell's objects: cell and picture in, each object's colour and faces out."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
-from ..arrays import Array, Mask
+from ..arrays import Mask
 from ..cell import Cell
 from ..errors import InvalidValue
 from ..picture.pictures import Light, Picture, check_size, linear_light
@@ -63,10 +63,9 @@ def looks_of(
 def _look(sight: Sight, index: int, light: Light, *, jpeg: bool, textured: bool) -> Look:
     thing = sight.things[index]
     sampled = sampled_color(sight, index, light, jpeg=jpeg)
-    color = sampled.color if sampled.color is not None else _old_color(thing)
-    if not textured or color is None:
+    if not textured or sampled.color is None:
         return Look(thing, sampled, warnings=(*sampled.warnings, *_advice(thing, sampled)))
-    asked = [face_picture(sight, index, face, light, color) for face in face_names(thing)]
+    asked = [face_picture(sight, index, face, light, sampled.color) for face in face_names(thing)]
     faces = tuple(face for face in asked if isinstance(face, FacePicture))
     unseen = tuple(face for face in asked if isinstance(face, NotSeen))
     doubts = sampled.warnings
@@ -80,7 +79,3 @@ def _advice(thing: Primitive, sampled: ColorSample) -> tuple[str, ...]:
         return ()
     share = f"{100 * sampled.share:.0f} %"
     return (f"{thing.name}: one colour describes {share} of its pixels; give it a texture",)
-
-
-def _old_color(thing: Primitive) -> Array | None:
-    return None if thing.appearance is None else thing.appearance.color

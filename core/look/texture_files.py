@@ -41,13 +41,14 @@ def with_looks(cell: Cell, looks: Iterable[Look], document: str | Path) -> Cell:
 
 
 def _dressed(look: Look, pictures: dict[str, str]) -> Primitive:
-    old = look.thing.appearance
-    color = look.color.color if look.color.color is not None else old and old.color
+    old, color = look.thing.appearance, look.color.color
     if color is None:
         return look.thing
     textures = {face.face: Texture(pictures[face.face], face.seen) for face in look.faces}
-    kept = old.textures if old is not None and not textures else textures
-    return replace(look.thing, appearance=Appearance(color, kept))
+    if old is not None and not (look.faces or look.unseen):
+        # no texture was asked for: what was there may stay
+        textures = dict(old.textures)
+    return replace(look.thing, appearance=Appearance(color, textures))
 
 
 def _seen_from(cell: Cell, picture: Path) -> str:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pure geometry of the solids: curves, rays, features and triangles."""
+"""Pure geometry of the solids: their edges and outlines, rays against them, faces and axes."""
