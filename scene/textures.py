@@ -21,9 +21,25 @@ from ..core.primitives import Primitive
 from ..core.shape.charts import chart_of
 from ..core.shape.intervals import face_names
 from .materials import PLAIN, shader_of, surface
-from .meshes import mesh_vertices
+from .meshes import fill_mesh, mesh_vertices, shape_of
 
 UV_LAYER = "monocell"
+
+
+def is_textured(thing: Primitive) -> bool:
+    """Whether the pictures of some of its faces are known."""
+    return thing.appearance is not None and bool(thing.appearance.textures)
+
+
+def painted_mesh(thing: Primitive, folder: Path, *, glow: bool = False) -> tuple[Any, list[Any]]:
+    """A new mesh of the solid with its colour and textures; also all that was made, it included."""
+    mesh = bpy.data.meshes.new(thing.name)
+    fill_mesh(mesh, shape_of(thing))
+    try:
+        return mesh, [mesh, *paint(mesh, thing, folder, glow=glow)]
+    except PictureError:
+        bpy.data.meshes.remove(mesh)
+        raise
 
 
 def paint(mesh: Any, thing: Primitive, folder: Path, *, glow: bool = False) -> list[Any]:
@@ -34,21 +50,17 @@ def paint(mesh: Any, thing: Primitive, folder: Path, *, glow: bool = False) -> l
     made. Raises PictureError for a picture that is missing or can't be read.
     """
     look = thing.appearance or Appearance(np.array(PLAIN))
-    made = [_surface(f"{thing.name} color", look.color, glow)]
-    slots = {}
-    for face, texture in look.textures.items():
-        image = _image(folder / texture.picture)
-        material = _surface(f"{thing.name}.{face}", look.color, glow)
-        _show(material, image, glow)
-        slots[face] = len(slots) + 1
-        made += [material, image]
+    images = _images(look, folder)
+    materials = [_surface(f"{thing.name} color", look.color, glow)]
+    for face, image in images.items():
+        materials.append(_surface(f"{thing.name}.{face}", look.color, glow))
+        _show(materials[-1], image, glow)
     mesh.materials.clear()
-    for datablock in made:
-        if isinstance(datablock, bpy.types.Material):
-            mesh.materials.append(datablock)
-    if slots:
-        _lay_out(mesh, thing, slots)
-    return made
+    for material in materials:
+        mesh.materials.append(material)
+    if images:
+        _lay_out(mesh, thing, {face: i + 1 for i, face in enumerate(images)})
+    return [*materials, *images.values()]
 
 
 def _lay_out(mesh: Any, thing: Primitive, slots: dict[str, int]) -> None:
@@ -131,6 +143,18 @@ def _show(material: Any, image: Any, glow: bool) -> None:
         node.outputs["Color"],
         shader_of(material).inputs["Emission Color" if glow else "Base Color"],
     )
+
+
+def _images(look: Appearance, folder: Path) -> dict[str, Any]:
+    """The pictures by face; a refusal leaves none of them behind."""
+    images: dict[str, Any] = {}
+    try:
+        for face, texture in look.textures.items():
+            images[face] = _image(folder / texture.picture)
+    except PictureError:
+        bpy.data.batch_remove(list(images.values()))
+        raise
+    return images
 
 
 def _image(path: Path) -> Any:
