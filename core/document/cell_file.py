@@ -16,6 +16,7 @@ from ..primitives import Primitive
 from ..reference import PendingReference, Reference
 from ..sighting import Sighting
 from ..sketch import Sketch
+from .appearance_entries import with_pictures_moved
 from .entries import (
     camera_entry,
     camera_from_entry,
@@ -101,7 +102,10 @@ def document_from_cell(cell: Cell, folder: Path) -> dict[str, Any]:
         for sighting in cell.sightings
     ]
     document["references"] = [reference_entry(reference) for reference in cell.references]
-    document["objects"] = [object_entry(thing) for thing in cell.things]
+    document["objects"] = [
+        with_pictures_moved(object_entry(thing), lambda name: _moved(name, cell.folder, folder))
+        for thing in cell.things
+    ]
     return document
 
 

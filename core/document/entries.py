@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from ..appearance import Appearance
 from ..arrays import Array, positive
 from ..camera import Camera
 from ..distortion import Distortion
@@ -18,6 +17,7 @@ from ..intrinsics import Intrinsics
 from ..pose import Pose
 from ..primitives import KINDS, Box, Cylinder, Picks, Primitive
 from ..sketch import Sketch
+from .appearance_entries import appearance_entry, appearance_from_fields, check_faces
 from .fields import Fields, items, keyed, number, shown, vector
 
 Entry = dict[str, Any]
@@ -97,7 +97,7 @@ def object_entry(thing: Primitive | Sketch, *, with_picks: bool = True) -> Entry
     if with_picks and (thing.picks or isinstance(thing, Sketch)):
         entry["picks"] = {role: _plain(pixels) for role, pixels in thing.picks.items()}
     if thing.appearance is not None:
-        entry["appearance"] = {"color": thing.appearance.color.tolist()}
+        entry["appearance"] = appearance_entry(thing.appearance)
     return entry
 
 
@@ -129,10 +129,12 @@ def thing_from_entry(entry: Any, where: str) -> Primitive | Sketch:
                 fields.text("on"),
                 _picks(fields),
                 _known(fields),
-                _appearance(fields),
+                appearance_from_fields(fields),
             )
     required = ("name", "kind", "world_from_object", *sizes)
-    return _solved(keyed(entry, where, required, (*common, "covariance")))
+    thing = _solved(keyed(entry, where, required, (*common, "covariance")))
+    check_faces(thing, where)
+    return thing
 
 
 def _solved(fields: Fields) -> Primitive:
@@ -146,7 +148,7 @@ def _solved(fields: Fields) -> Primitive:
             "on": fields.text("on") if fields.has("on") else None,
             "picks": _picks(fields),
             "known": _known(fields),
-            "appearance": _appearance(fields),
+            "appearance": appearance_from_fields(fields),
             "covariance": _covariance(fields, 6 + len(kind.size_names)),
         }
         if kind is Box:
@@ -185,13 +187,6 @@ def _known(fields: Fields) -> dict[str, float]:
         for name in kind.size_names
         if known.has(name)
     }
-
-
-def _appearance(fields: Fields) -> Appearance | None:
-    if not fields.has("appearance"):
-        return None
-    where = fields.path("appearance")
-    return Appearance(keyed(fields.raw("appearance"), where, ("color",), ()).vector("color", 3))
 
 
 def _picks(fields: Fields) -> Picks:
