@@ -155,12 +155,13 @@ def _cone(rng: Rng, *, pointed: bool, lying: bool = False, **counts: int) -> Tas
     if lying:
         slope = np.arctan2(radius - top, height)
         middle = (radius + top) / 2 * np.cos(slope)
-        at = turned(standing(rng, FLOOR, 2 * middle), (np.pi / 2 - slope, 0, 0))
+        at = turned(standing(rng, FLOOR, 2 * middle), (np.pi / 2 + slope, 0, 0))
         relations = (Relation("lies_on", "floor"),)
     truth = Cone("it", at, radius=radius, top_radius=top, height=height)
     camera = random_camera(rng)
     picks = round_picks(truth, camera, rng, **counts)
-    return Task(camera, truth, picks, None if lying else "floor", relations)
+    known = ("top_radius",) if pointed else ()
+    return Task(camera, truth, picks, None if lying else "floor", relations, known)
 
 
 def _tube(rng: Rng, *, lying: bool = False, **counts: int) -> Task:
@@ -238,7 +239,7 @@ WAYS = (
     Way("cylinder: on the side of a crate", _on_a_face),
     Way("cylinder: floating, known radius", _free_round),
     Way("cone: frustum by its rims", lambda r: _cone(r, pointed=False, rim=3, top=3)),
-    Way("cone: frustum by sides and rims", lambda r: _cone(r, pointed=False, rim=2, top=3, sides=2)),
+    Way("cone: frustum by sides and rims", lambda r: _cone(r, pointed=False, rim=2, top=4, sides=2)),
     Way("cone: pointed, rim and apex", lambda r: _cone(r, pointed=True, rim=3, apex=1)),
     Way("cone: pointed, rim, sides and apex", lambda r: _cone(r, pointed=True, rim=2, sides=2, apex=1)),
     Way("cone: lying frustum", lambda r: _cone(r, pointed=False, lying=True, rim=4, top=4, sides=2)),
@@ -246,7 +247,7 @@ WAYS = (
     Way("tube: lying", lambda r: _tube(r, lying=True, rim=4, top=3, sides=2, hole=3)),
     Way("sphere: floating, known radius", lambda r: _ball(r, "", ("radius",))),
     Way("sphere: on the floor", lambda r: _ball(r, "floor")),
-    Way("sphere: on the floor, known radius, two picks", lambda r: _ball(r, "floor", ("radius",), 2)),
+    Way("sphere: on the floor, known radius", lambda r: _ball(r, "floor", ("radius",), 3)),
     Way("sphere: against a wall", lambda r: _ball(r, "wall")),
     Way("sphere: touching a line", lambda r: _ball(r, "rope")),
     Way("prism: all corners that show", _prism),

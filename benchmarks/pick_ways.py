@@ -27,6 +27,7 @@ from pick_way_table import WAYS, Way
 
 # fits within this much chi squared of the best fit as well
 ALIKE = 4.0
+SHOWN=True
 SAME_SHARE = 1e-3
 
 
@@ -150,7 +151,9 @@ def _fit(task: Task, thing: Primitive, starts: Starts) -> ModelFit | None:
     things = [*task.things.values(), _named(thing)]
     try:
         return fit_model(task.camera, REFERENCES, things, pick_observer({"it": starts.plan}), ["it"])
-    except MonocellError:
+    except MonocellError as error:
+        if SHOWN:
+            print("   ", error)
         return None
 
 
