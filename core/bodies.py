@@ -164,7 +164,7 @@ def _in_order(bodies: list[Body], things: Things, index: Mapping[str, int]) -> t
             )
         placed |= {i: len(placed) + n for n, i in enumerate(ready)}
         waiting = [i for i in waiting if i not in ready]
-    new_number: dict[int | None, int | None] = dict(placed)
+    new_number: dict[int | None, int | None] = {None: None, **placed}
     return tuple(
         replace(bodies[i], parent=new_number.get(parents[i]))
         for i in sorted(placed, key=lambda i: placed[i])
