@@ -3,8 +3,8 @@
 
     python benchmarks/pick_ways.py [--objects 500] [--sigma 1] [--only cylinder]
 
-`right` ends where a fit that starts from the truth ends; `other` fits the same picks no worse
-elsewhere (they can't tell), `wrong` is worse or nothing. `size` is the median error of all sizes in
+`right` ends where a fit that starts from the truth ends, or lower beside it; `other` fits the same
+picks no worse elsewhere (they can't tell), `wrong` is worse or nothing. `size` is the median error of all sizes in
 percent, `covered` how often the 95 % ellipsoid of the solved sizes holds the true ones.
 """
 
@@ -27,8 +27,9 @@ from pick_way_table import WAYS, Way
 
 # fits within this much chi squared of the best fit as well
 ALIKE = 4.0
-SHOWN=True
 SAME_SHARE = 1e-3
+# of a normal distribution, one side: 99.9 %
+SURE = 3.0902
 
 
 @dataclass(frozen=True)
@@ -105,20 +106,33 @@ def _judged(
     task: Task, fitted: ModelFit, ideal: ModelFit | None, seconds: float, starts: int
 ) -> Outcome:
     thing = fitted.objects["it"].thing
-    verdict = "right"
-    told = ""
-    if ideal is not None and not _same(thing, ideal.objects["it"].thing):
-        alike = fitted.chi_squared <= ideal.chi_squared + ALIKE
-        verdict = "other" if alike else "wrong"
-        told = f"chi {fitted.chi_squared:.1f} ({ideal.chi_squared:.1f}) {thing.sizes} {task.truth.sizes}"
+    ideal_cost = np.inf if ideal is None else ideal.chi_squared
+    same = ideal is not None and _same(thing, ideal.objects["it"].thing)
+    # an outline seen edge-on has several small valleys beside each other: the deepest will do
+    better = fitted.chi_squared <= ideal_cost and _holds(thing, task.truth, SURE)
+    alike = fitted.chi_squared <= ideal_cost + ALIKE
+    verdict = "right" if same or better else "other" if alike else "wrong"
+    told = (
+        f"chi squared {fitted.chi_squared:.1f}, from the truth {ideal_cost:.1f}; "
+        f"sizes {thing.sizes.round(4)}, true {task.truth.sizes.round(4)}"
+    )
     errors, covered = (), True
     free = [i for i, name in enumerate(thing.size_names) if name not in thing.known]
     if free:
         off = (thing.sizes - task.truth.sizes)[free]
         errors = tuple(np.abs(off) / task.truth.sizes[free])
-        part = thing.covariance[6:, 6:][np.ix_(free, free)]
-        covered = float(off @ np.linalg.pinv(part) @ off) <= _chi_squared_95(len(free))
+        covered = _holds(thing, task.truth, 1.6449)
     return Outcome(verdict, seconds, errors, covered, starts, told)
+
+
+def _holds(thing: Primitive, truth: Primitive, normal: float) -> bool:
+    """Whether the ellipsoid of the solved sizes, as wide as a normal's quantile, holds the true."""
+    free = [i for i, name in enumerate(thing.size_names) if name not in thing.known]
+    if not free:
+        return True
+    off = (thing.sizes - truth.sizes)[free]
+    part = thing.covariance[6:, 6:][np.ix_(free, free)]
+    return float(off @ np.linalg.pinv(part) @ off) <= _chi_squared(len(free), normal)
 
 
 def _task(way: Way, rng: np.random.Generator) -> Task:
@@ -151,9 +165,7 @@ def _fit(task: Task, thing: Primitive, starts: Starts) -> ModelFit | None:
     things = [*task.things.values(), _named(thing)]
     try:
         return fit_model(task.camera, REFERENCES, things, pick_observer({"it": starts.plan}), ["it"])
-    except MonocellError as error:
-        if SHOWN:
-            print("   ", error)
+    except MonocellError:
         return None
 
 
@@ -168,9 +180,9 @@ def _same(one: Primitive, other: Primitive) -> bool:
     return bool(np.abs(places).max() < scale and np.abs(one.sizes - other.sizes).max() < scale)
 
 
-def _chi_squared_95(count: int) -> float:
-    """Wilson and Hilferty's approximation, good to half a percent."""
-    return float(count * (1 - 2 / (9 * count) + 1.6449 * np.sqrt(2 / (9 * count))) ** 3)
+def _chi_squared(count: int, normal: float) -> float:
+    """The quantile of chi squared where a normal's is `normal` (Wilson and Hilferty 1931)."""
+    return float(count * (1 - 2 / (9 * count) + normal * np.sqrt(2 / (9 * count))) ** 3)
 
 
 if __name__ == "__main__":

@@ -24,8 +24,11 @@ from .holding import Hold, References
 from .observed import Observe, Observed
 from .solid import Solid
 
-# a relation off by a tenth of a millimetre (or milliradian) weighs as much as one residual
+# what a metre (or radian) off a relation costs, in squared residuals
+HELD_PRICE = 1e7
+# a fit whose relations are off by less than this has still settled
 HELD_SIGMA = 1e-4
+RESTORING_STEPS = 4
 SETTLED_HOLD = 1e-9
 LARGEST_DAMPING, SMALLEST_DAMPING = 1e10, 1e-12
 
@@ -107,12 +110,14 @@ def fit_groups(problem: Problem, start: Scene, *, joint: bool, steps: int = 60) 
     here = _evaluated(problem, start)
     if here is None:
         return None
+    here = _kept(problem, start, here)
     damping = 1e-4
     for _ in range(steps):
         moves, noise, promised = _step(here.systems, here.scene.noise, damping, joint)
         if promised <= 1e-11 * (here.cost + 1e-12) and here.worst_hold < SETTLED_HOLD:
             return replace(here, settled=True)
         tried = _evaluated(problem, _moved(problem, here.scene, start, moves, noise))
+        tried = None if tried is None else _kept(problem, start, tried)
         if tried is not None and _merit(tried) <= _merit(here):
             here, damping = tried, max(damping * 0.1, SMALLEST_DAMPING)
         elif damping >= LARGEST_DAMPING:
@@ -122,9 +127,27 @@ def fit_groups(problem: Problem, start: Scene, *, joint: bool, steps: int = 60) 
     return here
 
 
+def _kept(problem: Problem, start: Scene, fitted: Fitted) -> Fitted:
+    """Brought back onto what holds the objects, which a long step leaves by its square.
+
+    Steps are then judged by their residuals alone: a price on what is off would stop them short.
+    """
+    for _ in range(RESTORING_STEPS):
+        if fitted.worst_hold < SETTLED_HOLD:
+            break
+        moves = [system.restored for system in fitted.systems]
+        scene = _moved(problem, fitted.scene, start, moves, np.zeros(problem.noise))
+        back = _evaluated(problem, scene)
+        if back is None or back.worst_hold > 0.5 * fitted.worst_hold:
+            break
+        fitted = back
+    return fitted
+
+
 def _merit(fitted: Fitted) -> float:
-    held = sum(float(s.held @ s.held) for s in fitted.systems)
-    return fitted.cost + held / HELD_SIGMA**2
+    """The cost, with what is still off at a price that no residual can outbid."""
+    held = sum(float(np.abs(s.held).sum()) for s in fitted.systems)
+    return fitted.cost + HELD_PRICE * held
 
 
 def _evaluated(problem: Problem, scene: Scene) -> Fitted | None:
