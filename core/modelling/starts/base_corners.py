@@ -56,9 +56,7 @@ def refuse_crossing(picked: RolePicks) -> None:
     if min(bends) < -COLLINEAR and max(bends) > COLLINEAR:
         name, role = picked.labels[0].split(": ")
         face = role.split("[")[0]
-        raise PickError(
-            f"{name}: the {face} corners cross; pick them in order round the {face}"
-        )
+        raise PickError(f"{name}: the {face} corners cross; pick them in order round the {face}")
 
 
 def top_heights(camera: Camera, plane: ReferencePlane, corners: Array, top: RolePicks) -> Array:
