@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..camera import Camera
+from ..covariance import propagated
 from ..errors import NotConverged, PickError
 from ..primitives import Primitive
 from .fit_uncertainty import (
@@ -183,7 +184,7 @@ class _Fitting:
         done = {}
         for name, columns in columns_of(group, scene.things):
             own, by_noise = spreads.own[columns] * scale, spreads.by_noise[columns]
-            whole: Array = own @ own.T + by_noise @ shared @ by_noise.T
+            whole = propagated(own, np.eye(own.shape[1])) + propagated(by_noise, shared)
             thing = scene.solids[name].applied(scene.things[name])
             by_camera = by_camera_of(by_noise, layout, self.camera)
             thing = replace(thing, covariance=without_dust(whole), by_camera=by_camera)
