@@ -176,7 +176,7 @@ def test_a_wrong_calibration_is_told_when_known_sizes_pull_it():
     true = camera(covariance=TWIST_COVARIANCE)
     cell, _, _ = stacked_cell(true, None, size_x=0.25, size_y=0.2, size_z=0.12)
     assert not model(cell, joint=True).warnings
-    wrong = true.placed(true.pose.perturbed([0, 0.012, 0, 0, 0, 0.012]), TWIST_COVARIANCE)
+    wrong = true.placed(true.pose.perturbed([0.015, 0, 0, 0, -0.01, 0]), TWIST_COVARIANCE)
     told = model(cell.with_camera(wrong), 0.3, joint=True).warnings
     assert any("pull camera and references" in warning for warning in told)
 
