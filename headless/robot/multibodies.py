@@ -209,12 +209,16 @@ def _create(client: int, links: Sequence[_Link]) -> int:
 
 def _set_dynamics(client: int, body: int, number: int, link: _Link) -> None:
     p: Any = pybullet()
-    limits = {}
-    if link.limits is not None:
-        limits = {"jointLowerLimit": link.limits[0], "jointUpperLimit": link.limits[1]}
     if link.mass > 0:
-        limits["localInertiaDiagonal"] = link.moments.tolist()
-    p.changeDynamics(body, number, collisionMargin=0.0, **limits, physicsClientId=client)
-    if link.joint != "fixed":
-        # Bullet brakes every joint until it is told not to
-        p.setJointMotorControl2(body, number, p.VELOCITY_CONTROL, force=0, physicsClientId=client)
+        moments = link.moments.tolist()
+        p.changeDynamics(body, number, localInertiaDiagonal=moments, physicsClientId=client)
+    if link.joint == "fixed":
+        return
+    # Bullet brakes every joint until it is told not to
+    p.setJointMotorControl2(body, number, p.VELOCITY_CONTROL, force=0, physicsClientId=client)
+    if link.limits is not None:
+        # in a call of their own: given with anything else, Bullet forgets them
+        lower, upper = link.limits
+        p.changeDynamics(
+            body, number, jointLowerLimit=lower, jointUpperLimit=upper, physicsClientId=client
+        )

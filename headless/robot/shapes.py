@@ -4,7 +4,8 @@
 Bullet rounds the corners of a box by its collision margin of 1 mm, which makes distances up to
 0.73 mm too large, the unsafe side (0.41 mm for a cylinder). With a margin of zero a box is exact to
 rounding and a cylinder to 0.02 mm, and neither is ever smaller than it should be on its faces. A
-ball is exact. Cones, tubes and prisms are convex hulls of their pieces (`pieces.py`).
+ball is exact. Cones, tubes and prisms are the convex hulls of their pieces (`pieces.py`), to 0.02 mm
+as well.
 """
 
 from __future__ import annotations
@@ -56,16 +57,20 @@ def collision_shape(client: int, thing: Primitive, frame_from_object: Pose | Non
     }
     if isinstance(thing, Box):
         half = (thing.size / 2).tolist()
-        return int(p.createCollisionShape(p.GEOM_BOX, halfExtents=half, **place))
-    if isinstance(thing, Sphere):
-        return int(p.createCollisionShape(p.GEOM_SPHERE, radius=thing.radius, **place))
-    if isinstance(thing, Cylinder):
+        shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=half, **place)
+    elif isinstance(thing, Sphere):
+        shape = p.createCollisionShape(p.GEOM_SPHERE, radius=thing.radius, **place)
+    elif isinstance(thing, Cylinder):
         size = {"radius": thing.radius, "height": thing.height}
-        return int(p.createCollisionShape(p.GEOM_CYLINDER, **size, **place))
-    with TemporaryDirectory(prefix="monocell-") as folder:
-        file = Path(folder) / "pieces.obj"
-        file.write_text(pieces_text(pieces_of(thing)), encoding="ascii")
-        return int(p.createCollisionShape(p.GEOM_MESH, fileName=str(file), **place))
+        shape = p.createCollisionShape(p.GEOM_CYLINDER, **size, **place)
+    else:
+        with TemporaryDirectory(prefix="monocell-") as folder:
+            file = Path(folder) / "pieces.obj"
+            file.write_text(pieces_text(pieces_of(thing)), encoding="ascii")
+            shape = p.createCollisionShape(p.GEOM_MESH, fileName=str(file), **place)
+    # Bullet sets margins through the base of a body alone; the shape keeps what it was given there
+    p.removeBody(_body(client, shape, Pose.identity()), physicsClientId=client)
+    return int(shape)
 
 
 def add_sphere(client: int, radius: float) -> int:
