@@ -75,7 +75,10 @@ class _Trace:
         if self.unsolved and isinstance(owner, Primitive):
             return ()
         self.objects[owner.name] = None
-        return () if owner.on is None else (owner.on,)
+        # objects may hold each other both ways, but none may hold itself through a reference
+        named = {reference.name for reference in self.cell.references}
+        held = [name for r in owner.relations for name in (r.to, r.about) if name in named]
+        return (*(() if owner.on is None else (owner.on,)), *(name for name in held if name))
 
     def _nothing_called(self, name: str, trail: tuple[str, ...]) -> str:
         user = f"{trail[-1]}: " if trail else ""

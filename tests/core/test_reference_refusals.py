@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from monocell.core import Box, Camera, Pose, ReferenceLine, ReferencePlane
+from monocell.core import Box, Camera, Pose, ReferenceLine, ReferencePlane, Relation
 from monocell.core.errors import DegenerateReference, InvalidValue, NoPose, PickError
 from monocell.core.reference import PendingReference
 from monocell.core.references.order import objects_behind
@@ -23,7 +23,7 @@ from monocell.core.references.sources import (
     ThroughPoints,
     Upright,
 )
-from referenced_cell import CAMERA, CRATE, FLOOR, LENS, referenced_cell
+from referenced_cell import CAMERA, CRATE, DRUM, FLOOR, LENS, referenced_cell
 
 # camera 1 m up that looks level along x: the horizon is the row of the principal point
 LEVEL = CAMERA.placed(Pose.looking_at([0, 0, 1.0], [1.0, 0, 1.0], [0, 0, 1]))
@@ -189,6 +189,17 @@ def test_a_circle_through_an_object_is_one_too():
     cell = referenced_cell(sources=sources, things=(replace(CRATE, on="lid"),))
     with pytest.raises(DegenerateReference, match=r"\(lid -> crate\.top -> lid\)"):
         resolve_references(cell)
+
+
+def test_a_circle_through_a_relation_is_one_too_and_objects_may_hold_each_other():
+    sources = {"lid": ("plane", FeatureOf("crate.top"))}
+    leaning = replace(CRATE, relations=(Relation("leans_on", "lid"),))
+    with pytest.raises(DegenerateReference, match=r"\(lid -> crate\.top -> lid\)"):
+        resolve_references(referenced_cell(sources=sources, things=(leaning,)))
+    one = replace(CRATE, relations=(Relation("parallel", "drum.axis"),))
+    other = replace(DRUM, relations=(Relation("parallel", "crate.axis"),))
+    cell = referenced_cell(sources=sources, things=(one, other))
+    assert resolve_references(cell)[1] == ()
 
 
 def test_a_chain_of_hundreds_resolves_in_any_order_and_an_endless_one_is_refused():
