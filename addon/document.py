@@ -18,7 +18,7 @@ import bpy
 from ..core.cell import Cell
 from ..core.document.cell_file import cell_from_document, document_from_cell
 from ..core.document.json_text import dumped
-from ..core.reference import ReferencePlane
+from ..core.reference import PendingReference, ReferencePlane, kind_of
 from .report import Report, dump_report, parse_report
 
 FLOOR = ReferencePlane("floor", [0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
@@ -108,8 +108,11 @@ def _fill_references(stored: Any, cell: Cell) -> None:
     for reference in cell.references:
         row = stored.references.add()
         row.name = reference.name
+        row.kind = kind_of(reference)
+        if isinstance(reference, PendingReference):
+            row.place = "not worked out yet"
+            continue
         plane = isinstance(reference, ReferencePlane)
-        row.kind = "plane" if plane else "line"
         way = reference.normal if plane else reference.direction
         row.place = _where(reference.point) + (" ⟂ " if plane else " ∥ ") + _where(way)
     planes = [i for i, r in enumerate(cell.references) if isinstance(r, ReferencePlane)]
