@@ -47,7 +47,7 @@ class Stage(Closing):
         self._ball: Any = None
         self._gripper: list[Any] = []
         self._panel: list[Any] = []
-        self._textures: list[Any] = []
+        self._images: list[Any] = []
         # what did not move is not sent to Cycles again
         self.scene.render.use_persistent_data = True
         build_room(self.scene, cell)
@@ -114,7 +114,7 @@ class Stage(Closing):
         obs, world = list(self.scene.collection.all_objects), self.scene.world
         bpy.data.scenes.remove(self.scene)
         _remove(obs)
-        bpy.data.batch_remove(self._textures)
+        bpy.data.batch_remove(self._images)
         bpy.data.worlds.remove(world)
 
     def _add_object(self, thing: Primitive) -> None:
@@ -122,7 +122,9 @@ class Stage(Closing):
         material = surface(thing.name, color, roughness=0.38)
         ob = self._add(thing.name, shape_of(thing), material)
         if is_textured(thing):
-            self._textures += paint(ob.data, thing, Path())
+            made = paint(ob.data, thing, Path())
+            # materials go with their objects
+            self._images += [each for each in made if isinstance(each, bpy.types.Image)]
         ob.matrix_world = matrix_of(thing.world_from_object)
 
     def _show_ball(self, ball: Ball | None) -> None:
