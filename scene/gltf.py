@@ -18,7 +18,8 @@ import bpy
 from ..core.atomic import atomic_path
 from ..core.camera import Camera
 from ..core.cell import Cell
-from ..core.document.entries import camera_entry, object_entry, reference_entry
+from ..core.document.entries import camera_entry, object_entry
+from ..core.document.reference_entries import reference_entry
 from ..core.errors import InvalidValue, RenderFailed
 from ..core.primitives import Primitive
 from .blender_camera import DISTORTION, place_camera

@@ -9,10 +9,11 @@ from typing import Any
 
 from ..atomic import atomic_path
 from ..camera import Camera
-from ..cell import Cell, Reference, check_names, check_sightings
+from ..cell import Cell, check_names, check_sightings
 from ..errors import DocumentError, InvalidValue
 from ..mount import Mount
 from ..primitives import Primitive
+from ..reference import PendingReference, Reference
 from ..sighting import Sighting
 from ..sketch import Sketch
 from .appearance_entries import with_pictures_moved
@@ -20,12 +21,11 @@ from .entries import (
     camera_entry,
     camera_from_entry,
     object_entry,
-    reference_entry,
-    reference_from_entry,
     thing_from_entry,
 )
 from .fields import keyed, text
 from .json_text import dumped, parse_json
+from .reference_entries import reference_entry, reference_from_entry
 from .sighting_entries import mount_entry, mount_from_entry, sighting_entry, sighting_from_entry
 
 VERSION = 1
@@ -110,7 +110,7 @@ def document_from_cell(cell: Cell, folder: Path) -> dict[str, Any]:
 
 
 def _check(
-    references: list[Reference],
+    references: list[Reference | PendingReference],
     things: list[Primitive | Sketch],
     sightings: tuple[Sighting, ...],
     mount: Mount | None,

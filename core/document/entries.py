@@ -11,13 +11,11 @@ import numpy as np
 
 from ..arrays import Array, positive
 from ..camera import Camera
-from ..cell import Reference
 from ..distortion import Distortion
 from ..errors import DocumentError, InvalidValue
 from ..intrinsics import Intrinsics
 from ..pose import Pose
 from ..primitives import KINDS, Box, Cylinder, Picks, Primitive
-from ..reference import ReferenceLine, ReferencePlane
 from ..sketch import Sketch
 from .appearance_entries import appearance_entry, appearance_from_fields, check_faces
 from .fields import Fields, items, keyed, number, shown, vector
@@ -81,27 +79,6 @@ def camera_from_entry(entry: Any, where: str = "camera") -> Camera:
             None if pose is None else pose_from_entry(pose, fields.path("camera_from_world")),
             _covariance(fields, 6),
         )
-
-
-def reference_entry(reference: Reference) -> Entry:
-    """A known plane or line of the world."""
-    if isinstance(reference, ReferencePlane):
-        way = {"kind": "plane", "point": reference.point, "normal": reference.normal}
-    else:
-        way = {"kind": "line", "point": reference.point, "direction": reference.direction}
-    return {"name": reference.name} | {k: _plain(v) for k, v in way.items()}
-
-
-def reference_from_entry(entry: Any, where: str) -> Reference:
-    """The inverse of `reference_entry`."""
-    fields = keyed(entry, where, ("name", "kind", "point"), ("normal", "direction"))
-    kind, way = fields.text("kind"), {"plane": "normal", "line": "direction"}
-    if kind not in way:
-        raise DocumentError(f"{fields.path('kind')}: {kind!r} is neither plane nor line")
-    keyed(entry, where, ("name", "kind", "point", way[kind]), ())
-    noun = ReferencePlane if kind == "plane" else ReferenceLine
-    with named(where):
-        return noun(fields.text("name"), fields.vector("point", 3), fields.vector(way[kind], 3))
 
 
 def object_entry(thing: Primitive | Sketch, *, with_picks: bool = True) -> Entry:
