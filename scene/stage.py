@@ -29,7 +29,7 @@ from .meshes import Shape, box, cylinder, fill_mesh, shape_of, sphere
 from .panel import STUB_RADIUS, build_panel, remove_print, stub_centre
 from .rendering import render_linear, render_picture, render_window
 from .room import build_room
-from .textures import is_textured, paint
+from .textures import is_textured, painted_mesh
 from .transforms import matrix_of
 from .work_cell import Ball, Panel, WorkCell
 
@@ -118,13 +118,15 @@ class Stage(Closing):
         bpy.data.worlds.remove(world)
 
     def _add_object(self, thing: Primitive) -> None:
-        color = PLAIN if thing.appearance is None else tuple(thing.appearance.color)
-        material = surface(thing.name, color, roughness=0.38)
-        ob = self._add(thing.name, shape_of(thing), material)
         if is_textured(thing):
-            made = paint(ob.data, thing, Path())
-            # materials go with their objects
+            mesh, made = painted_mesh(thing, Path())
+            # the rest goes with its object
             self._images += [each for each in made if isinstance(each, bpy.types.Image)]
+            ob = self._link(thing.name, mesh)
+        else:
+            color = PLAIN if thing.appearance is None else tuple(thing.appearance.color)
+            material = surface(thing.name, color, roughness=0.38)
+            ob = self._add(thing.name, shape_of(thing), material)
         ob.matrix_world = matrix_of(thing.world_from_object)
 
     def _show_ball(self, ball: Ball | None) -> None:
@@ -168,6 +170,9 @@ class Stage(Closing):
         mesh = bpy.data.meshes.new(name)
         fill_mesh(mesh, shape)
         mesh.materials.append(material)
+        return self._link(name, mesh)
+
+    def _link(self, name: str, mesh: Any) -> Any:
         ob = bpy.data.objects.new(name, mesh)
         self.scene.collection.objects.link(ob)
         return ob
