@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from ..errors import InvalidValue
 from ..primitives import Primitive
 from ..reference import ReferenceLine, ReferencePlane
-from ..relation import Relation
+from ..relation import RELATIONS, Relation
 from ..shape.features import Feature, feature
 from ..sketch import Sketch
 from .held_rows import RelationRows
@@ -47,11 +47,11 @@ class Hold:
 
     def rows(self, things: Mapping[str, Primitive], references: References) -> RelationRows:
         """The equations as things stand."""
-        about = None if self.about is None else _as_feature(self.about, things, references)
+        about = None if self.about is None else as_feature(self.about, things, references)
         to: Feature | Primitive = (
             things[self.to.name]
             if self.relation.kind in ("same_size", "symmetric")
-            else _as_feature(self.to, things, references)
+            else as_feature(self.to, things, references)
         )
         if about is not None and about.kind != "plane":
             raise InvalidValue(f"{self.own}: symmetric about a {about.kind}; name a plane")
@@ -91,8 +91,15 @@ def holds_of(
             )
         if to.is_object and to.name == thing.name:
             raise InvalidValue(f"{thing.name}: {relation.kind} {relation.to!r}, which is itself")
+        _refuse_line(thing.name, relation, to, references)
         holds.append(Hold(thing.name, relation, to, about))
     return tuple(holds)
+
+
+def _refuse_line(own: str, relation: Relation, to: Target, references: References) -> None:
+    line = not to.is_object and isinstance(references[to.name], ReferenceLine)
+    if line and RELATIONS[relation.kind] == "plane":
+        raise InvalidValue(f"{own}: {relation.kind} needs a plane, and {relation.to} is a line")
 
 
 def find_target(own: str, path: str, references: References, objects: Sequence[str]) -> Target:
@@ -108,7 +115,8 @@ def find_target(own: str, path: str, references: References, objects: Sequence[s
     raise InvalidValue(f"{own}: is held by {path!r}, which is not there; there is {known}")
 
 
-def _as_feature(target: Target, things: Mapping[str, Primitive], references: References) -> Feature:
+def as_feature(target: Target, things: Mapping[str, Primitive], references: References) -> Feature:
+    """The plane, line or point that a target is, as things stand; not of a whole object."""
     if not target.is_object:
         return reference_feature(references[target.name])
     assert target.feature is not None
