@@ -119,7 +119,7 @@ class Stage(Closing):
 
     def _add_object(self, thing: Primitive) -> None:
         if is_textured(thing):
-            mesh, made = painted_mesh(thing, Path())
+            mesh, made = painted_mesh(thing, self.cell.folder)
             # the rest goes with its object
             self._images += [each for each in made if isinstance(each, bpy.types.Image)]
             ob = self._link(thing.name, mesh)

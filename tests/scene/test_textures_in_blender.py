@@ -189,16 +189,24 @@ def test_nothing_is_left_in_blender(blender, cell, tmp_path):
     before = {kind: set(getattr(blender.data, kind).keys()) for kind in kinds}
     glb_of(cell, tmp_path / "cell.glb")
     flat_view(cell, samples=1)
-    things = tuple(
-        type(thing)(thing.name, thing.world_from_object,
-                    appearance=thing.appearance.with_pictures(lambda n: str(tmp_path / n)),
-                    size=thing.size)
-        for thing in cell.objects[:1]
-    )  # fmt: skip
-    with Stage(WorkCell(CAMERA, things)) as stage:
+    with Stage(WorkCell(CAMERA, cell.objects, folder=tmp_path)) as stage:
         stage.linear(samples=1)
     after = {kind: set(getattr(blender.data, kind).keys()) for kind in kinds}
     # Blender keeps the picture it rendered last
     after["images"] -= {"Render Result", "Viewer Node"}
     before["images"] -= {"Render Result", "Viewer Node"}
     assert after == before
+
+
+def test_a_cell_is_rendered_with_its_textures_and_its_truth_finds_them(blender, cell, tmp_path):
+    from monocell.core.document.cell_file import read_cell, write_cell
+    from monocell.headless.cli import main
+
+    write_cell(cell, tmp_path / "x.cell.json")
+    assert main(["render", str(tmp_path / "x.cell.json"), str(tmp_path / "out")]) == 0
+    truth = read_cell(tmp_path / "out" / "truth.cell.json")
+    texture = truth.objects[0].appearance.textures["top"]
+    assert texture.picture == "../crate.top.png"
+    picture, (_, inner) = cv2.imread(str(tmp_path / "out" / "cell.png")), expected(cell)
+    # light and shade change the colours, not which of them is strongest
+    assert (picture[inner].argmax(axis=1) == expected(cell)[0][inner].argmax(axis=1)).mean() > 0.9
