@@ -20,10 +20,10 @@ from monocell.core.shape.charts import chart_of
 from monocell.core.shape.hits import face_names
 
 TABLE = ReferencePlane("table", np.zeros(3), np.array([0.0, 0.0, 1.0]))
-KINDS = ("box", "box", "cylinder", "box", "cylinder", "box", "cylinder", "box")
+KINDS = ("box", "box", "cylinder", "prism", "cone", "tube", "cylinder", "sphere", "box")
 TEXELS_PER_METRE = 1600.0
-# every third object is of one colour
-PLAIN_EVERY = 3
+# two objects are of one colour
+PLAIN = (0, 6)
 
 
 def textured_cell(seed: int, folder: Path, kinds: tuple[str, ...] = KINDS) -> Cell:
@@ -35,7 +35,7 @@ def textured_cell(seed: int, folder: Path, kinds: tuple[str, ...] = KINDS) -> Ce
         thing = _placed(rng, f"{kind}{number}", kind, objects)
         color = rng.uniform(0.04, 0.75, 3)
         textures = {}
-        if number % PLAIN_EVERY:
+        if number not in PLAIN:
             textures = {
                 face: Texture(str(_print(rng, thing, face, color, folder)))
                 for face in face_names(thing)

@@ -19,7 +19,15 @@ from monocell.core.errors import PictureError
 from monocell.core.intrinsics import Intrinsics
 from monocell.core.look.textures import eight_bit_srgb
 from monocell.core.pose import Pose
-from monocell.core.primitives import Box, Cylinder
+from monocell.core.primitives import (
+    Box,
+    Cone,
+    Cylinder,
+    Prism,
+    Sphere,
+    Tube,
+    polygon_centre,
+)
 from monocell.core.shape.charts import chart_of
 from monocell.core.shape.hits import face_names, seen_map
 
@@ -35,7 +43,7 @@ QUARTERS = np.array([[40, 40, 220], [40, 200, 40], [220, 60, 40], [30, 210, 230]
 PLAIN = np.array([0.5, 0.1, 0.4])
 
 
-def quartered(folder, thing):
+def quartered(folder, thing, place=None):
     """The thing with four colours on each face, its corners told apart."""
     textures = {}
     for number, face in enumerate(face_names(thing)):
@@ -47,8 +55,9 @@ def quartered(folder, thing):
         cv2.imwrite(str(folder / name), np.concatenate([pixels, alpha], axis=2))
         textures[face] = Texture(name, 0.5)
     return type(thing)(
-        thing.name, thing.world_from_object, appearance=Appearance(PLAIN, textures),
-        **{name: getattr(thing, name) for name in ("size", "radius", "height")
+        thing.name, place or thing.world_from_object, appearance=Appearance(PLAIN, textures),
+        **{name: getattr(thing, name)
+           for name in ("size", "radius", "height", "top_radius", "inner_radius", "polygon")
            if hasattr(thing, name)},
     )  # fmt: skip
 
@@ -91,6 +100,29 @@ def expected(cell):
 
 def eight_bits(light):
     return eight_bit_srgb(light)[..., ::-1]
+
+
+POLYGON = np.array([[0.2, 0], [0.05, 0.17], [-0.15, 0.1], [-0.02, 0.02], [-0.1, -0.15]])
+OTHERS = (
+    Cone("bucket", Pose.identity(), radius=0.1, top_radius=0.17, height=0.2),
+    Cone("tip", Pose.identity(), radius=0.18, height=0.25),
+    Tube("tube", Pose.identity(), radius=0.17, inner_radius=0.14, height=0.12),
+    Sphere("ball", Pose.identity(), radius=0.16),
+    Prism("prism", Pose.identity(), polygon=POLYGON - polygon_centre(POLYGON), height=0.15),
+)
+
+
+@pytest.mark.parametrize("upside_down", [False, True], ids=["upright", "upside down"])
+@pytest.mark.parametrize("thing", OTHERS, ids=lambda thing: thing.name)
+def test_each_face_of_every_solid_shows_its_own_picture(blender, tmp_path, thing, upside_down):
+    from monocell.scene.flat_view import flat_view
+
+    turn = Pose.from_rotation_vector([np.pi * upside_down, 0, 0.4], [0.0, 0.05, 0.08])
+    cell = Cell(CAMERA, objects=(quartered(tmp_path, thing, turn),), folder=tmp_path)
+    picture, inner = expected(cell)
+    shown = eight_bits(flat_view(cell, samples=16))
+    assert inner.sum() > 150
+    assert (np.abs(shown[inner].astype(int) - picture[inner]).max(axis=1) <= 3).mean() > 0.995
 
 
 def test_each_face_shows_its_picture_the_right_way_up(blender, cell):
