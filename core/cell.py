@@ -47,6 +47,10 @@ class Cell:
         """Objects, then sketches: the order in which a document lists them."""
         return (*self.objects, *self.sketches)
 
+    def in_use(self) -> Cell:
+        """The cell with those of its sightings only that are not switched off."""
+        return replace(self, sightings=tuple(s for s in self.sightings if s.use))
+
     def path_of(self, picture: str) -> Path:
         """The file of a picture named in the document."""
         return self.folder / picture
