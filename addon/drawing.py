@@ -21,8 +21,11 @@ YELLOW: Color = (0.94, 0.89, 0.26, 1.0)
 GREEN: Color = (0.16, 0.78, 0.45, 1.0)
 ORANGE: Color = (0.98, 0.66, 0.1, 1.0)
 RED: Color = (0.94, 0.33, 0.2, 1.0)
+VIOLET: Color = (0.86, 0.62, 0.92, 1.0)
+GREY: Color = (0.62, 0.62, 0.62, 1.0)
 WHITE: Color = (1.0, 1.0, 1.0, 1.0)
 TEXT_SIZE = 13.0
+LABEL_SIZE = 11.0
 
 
 class LineBatch:
@@ -88,6 +91,20 @@ def draw_words(
         blf.position(0, left + pad, top - line * (i + 1) + 0.22 * line, 0)
         blf.color(0, *color)
         blf.draw(0, text)
+
+
+def draw_labels(labels: Iterable[tuple[Array, str, Color]], scale: float) -> None:
+    """Write short texts beside region points (2,), with a shadow that keeps them readable."""
+    import blf
+
+    blf.size(0, LABEL_SIZE * scale)
+    blf.enable(0, blf.SHADOW)
+    blf.shadow(0, 5, 0.0, 0.0, 0.0, 0.9)
+    for (x, y), text, color in labels:
+        blf.position(0, float(x) + 4 * scale, float(y) + 2 * scale, 0)
+        blf.color(0, *color)
+        blf.draw(0, text)
+    blf.disable(0, blf.SHADOW)
 
 
 def _plate(left: float, bottom: float, right: float, top: float) -> None:

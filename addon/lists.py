@@ -7,6 +7,7 @@ import bpy
 
 STATUS_ICONS = {
     "": "BLANK1",
+    "found": "MESH_CIRCLE",
     "used": "CHECKMARK",
     "doubtful": "QUESTION",
     "rejected": "CANCEL",
@@ -24,13 +25,20 @@ class SightingList(bpy.types.UIList):
 
 
 def columns(layout, picture, place, residual, item=None):
-    """Three columns, the same for the rows and their heading."""
+    """Four columns, the same for the rows and their heading."""
+    row = layout.row(align=True)
+    if item is None:
+        row.label(text="", icon="BLANK1")
+    else:
+        row.prop(item, "use", text="")
     icon = STATUS_ICONS[item.status] if item is not None else "BLANK1"
-    named = layout.split(factor=0.34, align=True)
+    rest = row.row(align=True)
+    rest.active = item is None or item.use
+    named = rest.split(factor=0.36, align=True)
     named.label(text=picture, icon=icon)
-    row = named.split(factor=0.72, align=True)
-    row.label(text=place)
-    row.label(text=residual)
+    numbers = named.split(factor=0.72, align=True)
+    numbers.label(text=place)
+    numbers.label(text=residual)
 
 
 class ReferenceList(bpy.types.UIList):

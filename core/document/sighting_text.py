@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -58,6 +59,22 @@ def sightings_from_text(text: str, unsaid: Unsaid) -> tuple[Sighting, ...]:
     _check_span([row.center for row in given])
     sightings = _completed(given, unsaid)
     return (*whole, *sightings)
+
+
+def read_sighting_file(file: Path, unsaid: Unsaid) -> tuple[Sighting, ...]:
+    """The sightings of a CSV, text or JSON file. Raises DocumentError naming the file."""
+    try:
+        text = file.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise DocumentError(f"{file}: there is no such file") from None
+    except OSError as error:
+        raise DocumentError(f"{file}: can't be read ({error.strerror})") from None
+    except UnicodeDecodeError:
+        raise DocumentError(f"{file}: is not a text file") from None
+    try:
+        return sightings_from_text(text, unsaid)
+    except (DocumentError, InvalidValue) as error:
+        raise DocumentError(f"{file}: {error}") from None
 
 
 @dataclass(frozen=True, eq=False)
