@@ -94,16 +94,11 @@ def _fill_sightings(stored: Any, cell: Cell, report: Report | None) -> None:
         row = stored.sightings.add()
         row.index, row.picture = i, sighting.picture
         row.kind = "ball" if isinstance(sighting, SphereSighting) else "point"
-        row.place = _held_at(sighting.center_world)
         if report is not None:
             seen = report.sightings[i]
             row.status, row.reason = seen.status, seen.reason
             row.residual = "–" if seen.rms_pixels is None else f"{seen.rms_pixels:.2f}"
     stored.sighting_index = max(0, min(stored.sighting_index, len(cell.sightings) - 1))
-
-
-def _held_at(place: Any) -> str:
-    return "on the flange" if place is None else "  ".join(f"{x:.2f}" for x in place)
 
 
 def _fill_references(stored: Any, cell: Cell) -> None:

@@ -15,30 +15,20 @@ STATUS_ICONS = {
 
 
 class SightingList(bpy.types.UIList):
-    """Ball sightings: picture, place of the ball, and what calibration made of it."""
+    """Sightings: whether in use, number and picture, and what the pose leaves of it in pixels."""
 
     bl_idname = "MONOCELL_UL_sightings"
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_property, index):
         """One row."""
-        columns(layout, PurePath(item.picture).stem, item.place, item.residual, item)
-
-
-def columns(layout, picture, place, residual, item=None):
-    """Four columns, the same for the rows and their heading."""
-    row = layout.row(align=True)
-    if item is None:
-        row.label(text="", icon="BLANK1")
-    else:
+        row = layout.row(align=True)
         row.prop(item, "use", text="")
-    icon = STATUS_ICONS[item.status] if item is not None else "BLANK1"
-    rest = row.row(align=True)
-    rest.active = item is None or item.use
-    named = rest.split(factor=0.36, align=True)
-    named.label(text=picture, icon=icon)
-    numbers = named.split(factor=0.72, align=True)
-    numbers.label(text=place)
-    numbers.label(text=residual)
+        rest = row.row(align=True)
+        rest.active = item.use
+        named = rest.split(factor=0.78, align=True)
+        name = f"{item.index + 1}  {PurePath(item.picture).stem}"
+        named.label(text=name, icon=STATUS_ICONS[item.status])
+        named.label(text=item.residual)
 
 
 class ReferenceList(bpy.types.UIList):

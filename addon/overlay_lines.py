@@ -30,7 +30,7 @@ FINE_PIXELS, POOR_PIXELS = 0.1, 0.6
 # orange at least
 DOUBTFUL_SHARE = 2 / 3
 OUTLINE_POINTS = 120
-LONGEST_REASON = 60
+LONGEST_REASON = 40
 CROSS_PIXELS = 7.0
 
 
@@ -77,7 +77,7 @@ def sighting_labels(cell: Cell, report: Report | None) -> Iterator[Label]:
         corner = np.array([points[:, 0].max(), points[:, 1].min()])
         told = f"{i + 1}"
         if report is not None and report.sightings[i].reason:
-            told += f"  {textwrap.shorten(report.sightings[i].reason, LONGEST_REASON)}"
+            told += f"  {textwrap.shorten(report.sightings[i].reason, LONGEST_REASON, placeholder=' ...')}"
         yield Label(corner, told, sighting_color(report, i, sighting.use))
     for k, place in enumerate(report.advice if report is not None else ()):
         told = f"next {k + 1}: {place.sigma_millimetres:.2f} mm"

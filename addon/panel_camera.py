@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar's second step: the ball sightings, and where they put the camera."""
 
+from typing import ClassVar
+
 import bpy
 import numpy as np
 
 from .cell_scene import camera_stands
 from .document import bare_cell, has_cell, stored_report
-from .lists import SightingList, columns
+from .lists import SightingList
 from .operators.add_pictures import AddPictures
 from .operators.add_point import AddPoint
 from .operators.add_sighting import AddSighting
@@ -21,7 +23,7 @@ from .operators.read_sightings import ReadSightings
 from .operators.remove_sighting import RemoveSighting
 from .operators.show_picture import ShowPicture
 from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
-from .steps import camera_step
+from .steps import FEWEST_SIGHTINGS, camera_step
 
 VERDICT_ICONS = {"good": "CHECKMARK", "weak": "ERROR", "failed": "CANCEL"}
 
@@ -45,6 +47,8 @@ class CameraPanel(CellPanel, bpy.types.Panel):
         cell = bare_cell(scene)
         if cell.sightings:
             _draw_sightings(layout, context, cell)
+        if len(cell.sightings) < FEWEST_SIGHTINGS:
+            draw_adding(layout, context)
         _draw_work(layout, context)
         _draw_pose(layout, context, cell)
 
@@ -54,30 +58,37 @@ class SightingsPanel(CellPanel, bpy.types.Panel):
 
     bl_idname = "MONOCELL_PT_sightings"
     bl_parent_id = CameraPanel.bl_idname
-    bl_label = "Add Sightings"
+    bl_label = "More Sightings"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):
-        """Blender's question whether there is anything to show."""
-        return has_cell(context.scene)
+        """Until there are enough, the panel above shows the same."""
+        scene = context.scene
+        return has_cell(scene) and len(scene.monocell_cell.sightings) >= FEWEST_SIGHTINGS
 
     def draw(self, context):
         """Blender's call."""
-        layout, inputs = self.layout, context.scene.monocell_inputs
-        column = layout.column(align=True)
-        row = column.row(align=True)
-        row.prop(inputs, "ball_radius", text="Radius")
-        row.prop(inputs, "position_unit", text="")
-        column.operator(AddPictures.bl_idname, text="Pictures + Copied Positions", icon="ADD")
-        row = column.row(align=True)
-        row.operator(ReadSightings.bl_idname, text="Read File", icon="FILE_FOLDER")
-        row.operator(PasteSightings.bl_idname, text="Paste", icon="PASTEDOWN").becomes = "NEW"
-        layout.label(text="In the picture shown")
-        layout.row(align=True).prop(inputs, "place_source", expand=True)
-        _draw_place(layout, context, inputs)
-        row = layout.row(align=True)
-        row.operator(AddSighting.bl_idname, icon="SPHERE")
-        row.operator(AddPoint.bl_idname, icon="EMPTY_AXIS")
+        draw_adding(self.layout, context)
+
+
+def draw_adding(layout, context):
+    """The ways to add sightings."""
+    inputs = context.scene.monocell_inputs
+    column = layout.column(align=True)
+    row = column.row(align=True)
+    row.prop(inputs, "ball_radius", text="Radius")
+    row.prop(inputs, "position_unit", text="")
+    column.operator(AddPictures.bl_idname, text="Pictures + Copied Positions", icon="ADD")
+    row = column.row(align=True)
+    row.operator(ReadSightings.bl_idname, text="Read File", icon="FILE_FOLDER")
+    row.operator(PasteSightings.bl_idname, text="Paste", icon="PASTEDOWN").becomes = "NEW"
+    layout.label(text="In the picture shown")
+    layout.row(align=True).prop(inputs, "place_source", expand=True)
+    _draw_place(layout, context, inputs)
+    row = layout.row(align=True)
+    row.operator(AddSighting.bl_idname, icon="SPHERE")
+    row.operator(AddPoint.bl_idname, icon="EMPTY_AXIS")
 
 
 def _draw_place(layout, context, inputs):
@@ -104,7 +115,6 @@ def _draw_place(layout, context, inputs):
 
 def _draw_sightings(layout, context, cell):
     stored = context.scene.monocell_cell
-    columns(layout.row(), "Ball", "centre, m", "px")
     row = layout.row()
     row.template_list(
         SightingList.bl_idname, "", stored, "sightings", stored, "sighting_index", rows=5

@@ -82,7 +82,6 @@ class SightingRow(bpy.types.PropertyGroup):
         set=_set_radius,
     )
     picture: StringProperty(name="Picture")
-    place: StringProperty(name="Centre of the ball in the world, m, to a centimetre")
     status: StringProperty(name="Status")
     residual: StringProperty(name="Residual, pixels rms")
     reason: StringProperty(name="Reason")
