@@ -77,7 +77,9 @@ def sighting_labels(cell: Cell, report: Report | None) -> Iterator[Label]:
         corner = np.array([points[:, 0].max(), points[:, 1].min()])
         told = f"{i + 1}"
         if report is not None and report.sightings[i].reason:
-            told += f"  {textwrap.shorten(report.sightings[i].reason, LONGEST_REASON, placeholder=' ...')}"
+            told += "  " + textwrap.shorten(
+                report.sightings[i].reason, LONGEST_REASON, placeholder=" ..."
+            )
         yield Label(corner, told, sighting_color(report, i, sighting.use))
     for k, place in enumerate(report.advice if report is not None else ()):
         told = f"next {k + 1}: {place.sigma_millimetres:.2f} mm"
