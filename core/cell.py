@@ -60,6 +60,10 @@ class Cell:
         """The references that have a place."""
         return tuple(r for r in self.references if not isinstance(r, PendingReference))
 
+    def in_use(self) -> Cell:
+        """The cell with those of its sightings only that are not switched off."""
+        return replace(self, sightings=tuple(s for s in self.sightings if s.use))
+
     def path_of(self, picture: str) -> Path:
         """The file of a picture named in the document."""
         return self.folder / picture
