@@ -85,7 +85,7 @@ def calibrated(plan: TabletopPlan) -> Camera:
     The covariance is that of a pose from balls all over the work space.
     """
     rng = np.random.default_rng([107, plan.seed])
-    low, high = np.array([*LOW, 0.05]) - [0.1, 0.1, 0], np.array([*HIGH, 0.6]) + [0.1, 0.1, 0]
+    low, high = [*(LOW - 0.1), 0.05], [*(HIGH + 0.1), 0.6]
     points = plan.camera.pose.apply(rng.uniform(low, high, (BALLS, 3)))
     _, by_point = plan.camera.intrinsics.project_with_jacobian(points)
     by_twist = (by_point @ point_jacobian(points)).reshape(-1, 6)
