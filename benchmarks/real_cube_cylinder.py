@@ -99,7 +99,7 @@ def _from_cube(given: Camera) -> Camera:
 
 def _given(folder: Path, shape: tuple[int, ...]) -> Camera:
     text = (folder / "cube.xml").read_text()
-    px, py, u0, v0 = (_number(text, name) for name in ("px", "py", "u0", "v0"))
+    px, py, u0, v0 = (number_in(text, name) for name in ("px", "py", "u0", "v0"))
     pose = np.array((folder / "cube.0.pos").read_text().split(), dtype=float)
     return Camera(
         Intrinsics(shape[1], shape[0], px, py, u0, v0),
@@ -115,10 +115,11 @@ def _picture(folder: Path, frame: int, parser: argparse.ArgumentParser) -> np.nd
     return picture
 
 
-def _number(text: str, name: str) -> float:
+def number_in(text: str, name: str) -> float:
+    """The number between the tags of that name."""
     found = re.search(rf"<{name}>([^<]*)</{name}>", text)
     if found is None:
-        raise SystemExit(f"cube.xml holds no <{name}>")
+        raise SystemExit(f"the camera file holds no <{name}>")
     return float(found[1])
 
 
