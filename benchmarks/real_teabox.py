@@ -3,8 +3,8 @@
 
     python benchmarks/real_teabox.py FOLDER [--out OUT]
 
-FOLDER holds `teabox_frame000.png` and `teabox.xml` (the camera), as in ViSP's tutorial on tracking a
-model. Nothing but the box tells the scale, so four of its corners, those of the tutorial's own
+FOLDER holds `teabox_frame000.png` and `teabox.xml` (the camera), as in ViSP's tutorial on tracking
+a model. Nothing but the box tells the scale, so four of its corners, those of its own
 `teabox.init`, give the pose as known points; the other three are the test. The box is of cardboard
 and bulges by a millimetre or two. The lens is given without distortion.
 """
