@@ -11,11 +11,10 @@ from .camera import Camera
 from .errors import InvalidValue, NoPose
 from .mount import Mount
 from .primitives import Primitive
-from .reference import ReferenceLine, ReferencePlane
+from .reference import PendingReference, Reference
+from .references.placed import reference_of_feature
 from .sighting import Sighting
 from .sketch import Sketch
-
-Reference = ReferencePlane | ReferenceLine
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +31,7 @@ class Cell:
     camera: Camera
     picture: str | None = None
     sightings: tuple[Sighting, ...] = ()
-    references: tuple[Reference, ...] = ()
+    references: tuple[Reference | PendingReference, ...] = ()
     objects: tuple[Primitive, ...] = ()
     sketches: tuple[Sketch, ...] = ()
     folder: Path = Path()
@@ -74,14 +73,24 @@ class Cell:
         return replace(self, objects=tuple(objects))
 
     def reference(self, name: str) -> Reference:
-        """The reference of that name. Raises InvalidValue."""
+        """The reference of that name, or the face, edge or axis of a solved object (`crate.top`).
+
+        Raises InvalidValue for a name that is not there, or has no place yet.
+        """
         for reference in self.references:
             if reference.name == name:
+                if isinstance(reference, PendingReference):
+                    raise InvalidValue(
+                        f"{name}: has no place yet: resolve the references, and model the objects "
+                        "they are made from"
+                    )
                 return reference
-        raise InvalidValue(f"no reference is called {name!r}")
+        return reference_of_feature(self.things, name, self.camera)
 
 
-def check_names(references: Sequence[Reference], things: Sequence[Primitive | Sketch]) -> None:
+def check_names(
+    references: Sequence[Reference | PendingReference], things: Sequence[Primitive | Sketch]
+) -> None:
     """Raises InvalidValue for two of one name, and for a thing on a reference that is not there.
 
     Messages name the thing by its index, `objects[2].on`.

@@ -18,7 +18,8 @@ import bpy
 from ..core.atomic import atomic_path
 from ..core.camera import Camera
 from ..core.cell import Cell
-from ..core.document.entries import camera_entry, object_entry, reference_entry
+from ..core.document.entries import camera_entry, object_entry
+from ..core.document.reference_entries import reference_entry
 from ..core.errors import InvalidValue, RenderFailed
 from ..core.primitives import Primitive
 from .blender_camera import DISTORTION, place_camera
@@ -26,6 +27,7 @@ from .glb_names import named_by_their_entries
 from .materials import PLAIN, surface
 from .meshes import fill_mesh, shape_of
 from .quiet import quiet_stdout
+from .textures import is_textured, painted_mesh
 from .transforms import stand
 
 CAMERA_NODE = "camera"
@@ -36,8 +38,9 @@ def export_gltf(cell: Cell, path: str | Path) -> None:
     """Write a binary glTF (`.glb`) of the cell's objects and camera, whole or not at all.
 
     Everything is built in a Blender scene of its own that is gone afterwards; the user's scene
-    stays as it was, and active. Raises InvalidValue for another ending than .glb, DocumentError
-    when the file can't be written, RenderFailed when the exporter gives none.
+    stays as it was, and active. Textures are embedded. Raises InvalidValue for another ending than
+    .glb, DocumentError when the file can't be written, PictureError for a texture that can't be
+    read, RenderFailed when the exporter gives none.
     """
     if Path(path).suffix.lower() != ".glb":
         raise InvalidValue(f"{path}: a glTF export is one binary file; name it .glb")
@@ -86,6 +89,11 @@ def _build_objects(scene: Any, cell: Cell, built: list[Any]) -> None:
     materials: dict[tuple[float, ...], Any] = {}
     meshes: dict[tuple[Any, ...], Any] = {}
     for thing in cell.objects:
+        if is_textured(thing):
+            mesh, made = painted_mesh(thing, cell.folder)
+            built += made
+            _stand(scene, thing, mesh, built)
+            continue
         color = tuple(PLAIN if thing.appearance is None else thing.appearance.color)
         key = (thing.kind, *thing.sizes, *color)
         if color not in materials:
@@ -94,11 +102,15 @@ def _build_objects(scene: Any, cell: Cell, built: list[Any]) -> None:
         if key not in meshes:
             meshes[key] = _mesh(thing, materials[color])
             built.append(meshes[key])
-        ob = bpy.data.objects.new(thing.name, meshes[key])
-        built.append(ob)
-        stand(ob, thing.world_from_object)
-        ob["monocell"] = object_entry(thing, with_picks=False)
-        scene.collection.objects.link(ob)
+        _stand(scene, thing, meshes[key], built)
+
+
+def _stand(scene: Any, thing: Primitive, mesh: Any, built: list[Any]) -> None:
+    ob = bpy.data.objects.new(thing.name, mesh)
+    built.append(ob)
+    stand(ob, thing.world_from_object)
+    ob["monocell"] = object_entry(thing, with_picks=False)
+    scene.collection.objects.link(ob)
 
 
 def _mesh(thing: Primitive, material: Any) -> Any:
@@ -134,5 +146,5 @@ def _export(path: Path) -> None:
             export_animations=False,
             export_skins=False,
             export_morph=False,
-            export_texcoords=False,
+            export_texcoords=True,
         )

@@ -29,6 +29,7 @@ from .meshes import Shape, box, cylinder, fill_mesh, shape_of, sphere
 from .panel import STUB_RADIUS, build_panel, remove_print, stub_centre
 from .rendering import render_linear, render_picture, render_window
 from .room import build_room
+from .textures import is_textured, paint
 from .transforms import matrix_of
 from .work_cell import Ball, Panel, WorkCell
 
@@ -46,6 +47,7 @@ class Stage(Closing):
         self._ball: Any = None
         self._gripper: list[Any] = []
         self._panel: list[Any] = []
+        self._textures: list[Any] = []
         # what did not move is not sent to Cycles again
         self.scene.render.use_persistent_data = True
         build_room(self.scene, cell)
@@ -112,12 +114,15 @@ class Stage(Closing):
         obs, world = list(self.scene.collection.all_objects), self.scene.world
         bpy.data.scenes.remove(self.scene)
         _remove(obs)
+        bpy.data.batch_remove(self._textures)
         bpy.data.worlds.remove(world)
 
     def _add_object(self, thing: Primitive) -> None:
         color = PLAIN if thing.appearance is None else tuple(thing.appearance.color)
         material = surface(thing.name, color, roughness=0.38)
         ob = self._add(thing.name, shape_of(thing), material)
+        if is_textured(thing):
+            self._textures += paint(ob.data, thing, Path())
         ob.matrix_world = matrix_of(thing.world_from_object)
 
     def _show_ball(self, ball: Ball | None) -> None:

@@ -9,17 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from ..appearance import Appearance
 from ..arrays import Array, positive
 from ..camera import Camera
-from ..cell import Reference
 from ..distortion import Distortion
 from ..errors import DocumentError, InvalidValue
 from ..intrinsics import Intrinsics
 from ..pose import Pose
 from ..primitives import KINDS, Box, Cylinder, Picks, Primitive
-from ..reference import ReferenceLine, ReferencePlane
 from ..sketch import Sketch
+from .appearance_entries import appearance_entry, appearance_from_fields, check_faces
 from .fields import Fields, items, keyed, number, shown, vector
 
 Entry = dict[str, Any]
@@ -83,27 +81,6 @@ def camera_from_entry(entry: Any, where: str = "camera") -> Camera:
         )
 
 
-def reference_entry(reference: Reference) -> Entry:
-    """A known plane or line of the world."""
-    if isinstance(reference, ReferencePlane):
-        way = {"kind": "plane", "point": reference.point, "normal": reference.normal}
-    else:
-        way = {"kind": "line", "point": reference.point, "direction": reference.direction}
-    return {"name": reference.name} | {k: _plain(v) for k, v in way.items()}
-
-
-def reference_from_entry(entry: Any, where: str) -> Reference:
-    """The inverse of `reference_entry`."""
-    fields = keyed(entry, where, ("name", "kind", "point"), ("normal", "direction"))
-    kind, way = fields.text("kind"), {"plane": "normal", "line": "direction"}
-    if kind not in way:
-        raise DocumentError(f"{fields.path('kind')}: {kind!r} is neither plane nor line")
-    keyed(entry, where, ("name", "kind", "point", way[kind]), ())
-    noun = ReferencePlane if kind == "plane" else ReferenceLine
-    with named(where):
-        return noun(fields.text("name"), fields.vector("point", 3), fields.vector(way[kind], 3))
-
-
 def object_entry(thing: Primitive | Sketch, *, with_picks: bool = True) -> Entry:
     """An object, solved or only picked; without picks as it travels in a glTF's extras."""
     entry: Entry = {"name": thing.name, "kind": thing.kind}
@@ -120,7 +97,7 @@ def object_entry(thing: Primitive | Sketch, *, with_picks: bool = True) -> Entry
     if with_picks and (thing.picks or isinstance(thing, Sketch)):
         entry["picks"] = {role: _plain(pixels) for role, pixels in thing.picks.items()}
     if thing.appearance is not None:
-        entry["appearance"] = {"color": thing.appearance.color.tolist()}
+        entry["appearance"] = appearance_entry(thing.appearance)
     return entry
 
 
@@ -152,10 +129,12 @@ def thing_from_entry(entry: Any, where: str) -> Primitive | Sketch:
                 fields.text("on"),
                 _picks(fields),
                 _known(fields),
-                _appearance(fields),
+                appearance_from_fields(fields),
             )
     required = ("name", "kind", "world_from_object", *sizes)
-    return _solved(keyed(entry, where, required, (*common, "covariance")))
+    thing = _solved(keyed(entry, where, required, (*common, "covariance")))
+    check_faces(thing, where)
+    return thing
 
 
 def _solved(fields: Fields) -> Primitive:
@@ -169,7 +148,7 @@ def _solved(fields: Fields) -> Primitive:
             "on": fields.text("on") if fields.has("on") else None,
             "picks": _picks(fields),
             "known": _known(fields),
-            "appearance": _appearance(fields),
+            "appearance": appearance_from_fields(fields),
             "covariance": _covariance(fields, 6 + len(kind.size_names)),
         }
         if kind is Box:
@@ -208,13 +187,6 @@ def _known(fields: Fields) -> dict[str, float]:
         for name in kind.size_names
         if known.has(name)
     }
-
-
-def _appearance(fields: Fields) -> Appearance | None:
-    if not fields.has("appearance"):
-        return None
-    where = fields.path("appearance")
-    return Appearance(keyed(fields.raw("appearance"), where, ("color",), ()).vector("color", 3))
 
 
 def _picks(fields: Fields) -> Picks:

@@ -83,6 +83,11 @@ class Fitted:
     settled: bool
 
     @property
+    def noise(self) -> int:
+        """How many numbers the shared noise has."""
+        return len(self.scene.noise)
+
+    @property
     def cost(self) -> float:
         """The sum of squared residuals in sigmas, with the noise's own."""
         seen = sum(float(s.seen @ s.seen) for s in self.systems)

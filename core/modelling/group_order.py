@@ -9,8 +9,11 @@ from graphlib import TopologicalSorter
 from .holding import Hold
 
 
-def in_order(names: Sequence[str], holds: Iterable[Hold]) -> list[tuple[str, ...]]:
-    """Each object after those that hold it; those that hold each other in one group."""
+def in_order(names: Sequence[str], holds: Iterable[Hold]) -> list[list[tuple[str, ...]]]:
+    """Objects in groups that hold each other, and the groups in levels: each after what holds it.
+
+    The groups of one level have nothing to do with each other.
+    """
     held_by = _held_by(names, holds)
     reach = {name: _reached(name, held_by) for name in names}
     groups: dict[str, tuple[str, ...]] = {}
@@ -20,7 +23,13 @@ def in_order(names: Sequence[str], holds: Iterable[Hold]) -> list[tuple[str, ...
     before: dict[tuple[str, ...], set[tuple[str, ...]]] = {groups[n]: set() for n in names}
     for name in names:
         before[groups[name]] |= {groups[o] for o in held_by[name]} - {groups[name]}
-    return list(TopologicalSorter(before).static_order())
+    levels, sorter = [], TopologicalSorter(before)
+    sorter.prepare()
+    while sorter.is_active():
+        ready = sorter.get_ready()
+        levels.append([group for group in dict.fromkeys(groups.values()) if group in ready])
+        sorter.done(*ready)
+    return levels
 
 
 def together(names: Sequence[str], holds: Iterable[Hold]) -> list[tuple[str, ...]]:

@@ -15,16 +15,18 @@ import numpy as np
 
 from ..arrays import Array
 from ..camera import Camera
-from ..covariance import inverse_information
 from ..errors import NotConverged, PickError
 from ..primitives import Primitive
+from .fit_uncertainty import Spreads, columns_of, noise_covariance_of, noise_scale, spreads_of
 from .group_fit import Fitted, Problem, Scene, fit_groups
 from .group_order import in_order, together
-from .group_system import CAMERA, GroupSystem
+from .group_system import CAMERA
 from .holding import Hold, References, holds_of
 from .noise_sources import Key, NoiseSources
 from .observed import Observe, Observed
 from .solid import Solid
+
+Layout = tuple[tuple[Key, int], ...]
 
 # relations that are kept to within this (metres, or sines) are kept
 KEPT = 1e-6
@@ -97,24 +99,40 @@ class _Fitting:
     wanted: list[str]
 
     def one_by_one(self) -> ModelFit:
-        things, chi_squared = dict(self.things), 0.0
+        things, done, chi_squared = dict(self.things), dict[str, FittedObject](), 0.0
         still = [t for name, t in things.items() if name not in self.wanted]
         sources = NoiseSources.of(self.camera, self.references, still)
-        done: dict[str, FittedObject] = {}
-        for group in in_order(self.wanted, self.holds):
-            spread, layout = sources.spread(self._keys(group))
-            fitted = self._fit([group], things, spread, sum(n for _, n in layout), joint=False)
-            spreads = _spreads(fitted.systems[0], group, things)
-            solved = _solved(fitted, 0, group, spreads, np.eye(sum(n for _, n in layout)))
-            for name, columns in _columns(group, things):
-                own = spreads.own[columns] * solved[name].noise_scale
-                sources = sources.with_object(
-                    name, spreads.by_noise[columns], layout, own, ("group", group[0])
-                )
-                things[name] = solved[name].thing
-            done |= solved
-            chi_squared += fitted.cost
+        for level in in_order(self.wanted, self.holds):
+            for groups, fitted, layout in self._level(level, things, sources):
+                for i, group in enumerate(groups):
+                    spreads = spreads_of(fitted.systems[i], group, things)
+                    solved = _solved(fitted, i, group, spreads, np.eye(fitted.noise))
+                    sources = _remembered(sources, solved, group, spreads, layout, things)
+                    done |= solved
+                chi_squared += fitted.cost
+            things |= {name: fitted_one.thing for name, fitted_one in done.items()}
         return ModelFit({name: done[name] for name in self.wanted}, self.camera, chi_squared)
+
+    def _level(
+        self,
+        level: Sequence[tuple[str, ...]],
+        things: Mapping[str, Primitive],
+        sources: NoiseSources,
+    ) -> Iterable[tuple[Sequence[tuple[str, ...]], Fitted, Layout]]:
+        """Groups that don't touch each other, side by side, or one by one to find who fails."""
+        if len(level) > 1:
+            spread, layout = sources.spread(k for group in level for k in self._keys(group))
+            fitted = self._fit(level, things, spread, sum(n for _, n in layout), joint=False)
+            if fitted is not None and fitted.settled and fitted.worst_hold <= KEPT:
+                return [(level, fitted, layout)]
+        return [self._alone(group, things, sources) for group in level]
+
+    def _alone(
+        self, group: tuple[str, ...], things: Mapping[str, Primitive], sources: NoiseSources
+    ) -> tuple[Sequence[tuple[str, ...]], Fitted, Layout]:
+        spread, layout = sources.spread(self._keys(group))
+        fitted = self._fit([group], things, spread, sum(n for _, n in layout), joint=False)
+        return [group], self._checked(fitted, group), layout
 
     def jointly(self) -> ModelFit:
         groups = together(self.wanted, self.holds)
@@ -123,11 +141,13 @@ class _Fitting:
         keys = [key for group in groups for key in self._keys(group)]
         spread, layout = sources.spread(keys)
         count = sum(n for _, n in layout)
-        fitted = self._fit(groups, self.things, spread, count, joint=True)
-        noise_covariance = _noise_covariance(fitted.systems, count)
+        fitted = self._checked(
+            self._fit(groups, self.things, spread, count, joint=True), self.wanted
+        )
+        noise_covariance = noise_covariance_of(fitted.systems, count)
         done: dict[str, FittedObject] = {}
         for i, group in enumerate(groups):
-            spreads = _spreads(fitted.systems[i], group, self.things)
+            spreads = spreads_of(fitted.systems[i], group, self.things)
             done |= _solved(fitted, i, group, spreads, noise_covariance)
         camera = fitted.scene.camera
         if CAMERA in spread:
@@ -149,7 +169,7 @@ class _Fitting:
         noise: int,
         *,
         joint: bool,
-    ) -> Fitted:
+    ) -> Fitted | None:
         names = [name for group in groups for name in group]
         known = {
             name: [things[name].size_names.index(size) for size in things[name].known]
@@ -158,43 +178,40 @@ class _Fitting:
         problem = Problem(groups, self.observe, self.holds, known, spread, noise)
         solids = {name: Solid.of(things[name]) for name in names}
         start = Scene(self.camera, self.references, things, solids, np.zeros(noise))
-        fitted = fit_groups(problem, start, joint=joint)
+        return fit_groups(problem, start, joint=joint)
+
+    def _checked(self, fitted: Fitted | None, names: Sequence[str]) -> Fitted:
         if fitted is None:
             raise PickError(
                 f"{', '.join(names)}: as picked, it can't be seen by this camera and lens"
             )
-        _refuse_contradictions(fitted, problem, names)
+        _refuse_contradictions(fitted, self.holds, names)
         return fitted
 
 
-@dataclass(frozen=True, eq=False)
-class _Spreads:
-    """How a group's tangent follows the shared noise (D, Q) and its picks' own noise (D, F)."""
-
-    by_noise: Array
-    own: Array
-
-
-def _spreads(
-    system: GroupSystem, group: Sequence[str], things: Mapping[str, Primitive]
-) -> _Spreads:
-    jacobian, by_noise, _ = system.reduced
-    information = jacobian.T @ jacobian
-    inverse = inverse_information(information) if len(information) else information
-    if inverse is None:
-        raise PickError(_left_open(system, group, things))
-    root = np.linalg.cholesky(inverse) if len(inverse) else inverse
-    follows = system.carried - system.free @ inverse @ jacobian.T @ by_noise
-    return _Spreads(follows, system.free @ root)
+def _remembered(
+    sources: NoiseSources,
+    solved: Mapping[str, FittedObject],
+    group: Sequence[str],
+    spreads: Spreads,
+    layout: Layout,
+    things: Mapping[str, Primitive],
+) -> NoiseSources:
+    """The sources with the solved objects of a group, for what stands on them."""
+    for name, columns in columns_of(group, things):
+        own = spreads.own[columns] * solved[name].noise_scale
+        by_noise = spreads.by_noise[columns]
+        sources = sources.with_object(name, by_noise, layout, own, ("group", group[0]))
+    return sources
 
 
 def _solved(
-    fitted: Fitted, i: int, group: Sequence[str], spreads: _Spreads, noise_covariance: Array
+    fitted: Fitted, i: int, group: Sequence[str], spreads: Spreads, noise_covariance: Array
 ) -> dict[str, FittedObject]:
     system = fitted.systems[i]
     scale = noise_scale(float(system.seen @ system.seen), len(system.seen) - system.free.shape[1])
     done = {}
-    for name, columns in _columns(group, fitted.scene.things):
+    for name, columns in columns_of(group, fitted.scene.things):
         own, by_noise = spreads.own[columns] * scale, spreads.by_noise[columns]
         covariance = own @ own.T + by_noise @ noise_covariance @ by_noise.T
         thing = fitted.scene.solids[name].applied(
@@ -204,68 +221,13 @@ def _solved(
     return done
 
 
-def noise_scale(chi_squared: float, spare: int) -> float:
-    """How many times the stated noise the residuals show; 1 unless they clearly exceed it.
-
-    Clearly: beyond two standard deviations of chi squared, and never with fewer than two spare
-    equations, which could not tell.
-    """
-    if spare < 2:
-        return 1.0
-    reduced = chi_squared / spare
-    return float(np.sqrt(reduced)) if reduced > 1.0 + 2.0 * float(np.sqrt(2.0 / spare)) else 1.0
-
-
-def _noise_covariance(systems: Iterable[GroupSystem], count: int) -> Array:
-    """What all objects together leave of the shared noise, (Q, Q)."""
-    information = np.eye(count)
-    for system in systems:
-        jacobian, by_noise, _ = system.reduced
-        cross = jacobian.T @ by_noise
-        inverse = np.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
-        information += by_noise.T @ by_noise - cross.T @ inverse @ cross
-    return np.linalg.inv(information)
-
-
-def _columns(group: Sequence[str], things: Mapping[str, Primitive]) -> list[tuple[str, slice]]:
-    widths = [6 + len(things[name].parameters) for name in group]
-    ends = np.cumsum(widths)
-    return [
-        (name, slice(int(end) - width, int(end)))
-        for name, end, width in zip(group, ends, widths, strict=True)
-    ]
-
-
-def _left_open(system: GroupSystem, group: Sequence[str], things: Mapping[str, Primitive]) -> str:
-    """Which numbers may change without any pick noticing."""
-    jacobian = system.reduced[0]
-    scale = np.linalg.norm(jacobian, axis=0)
-    scale[scale == 0] = 1e-300
-    _, _, directions = np.linalg.svd(jacobian / scale)
-    loose = system.free @ (directions[-1] / scale)
-    loose = np.abs(loose) / max(float(np.abs(loose).max()), 1e-300) > 0.05
-    told = []
-    for name, columns in _columns(group, things):
-        part = loose[columns]
-        names = things[name].size_names
-        open_ones = [
-            n for n, is_loose in zip(names, part[6 : 6 + len(names)], strict=True) if is_loose
-        ]
-        open_ones += ["its polygon"] if part[6 + len(names) :].any() else []
-        open_ones += ["its place"] if part[3:6].any() else []
-        open_ones += ["its turn"] if part[:3].any() else []
-        if open_ones:
-            told.append(f"{name}: the picks do not determine {', '.join(open_ones)}")
-    return f"{'; '.join(told)}; add picks, a relation or a known size"
-
-
-def _refuse_contradictions(fitted: Fitted, problem: Problem, names: Sequence[str]) -> None:
+def _refuse_contradictions(fitted: Fitted, holds: Iterable[Hold], names: Sequence[str]) -> None:
     if fitted.worst_hold <= KEPT:
         return
     things = fitted.scene.placed()
     off = [
         (float(np.abs(hold.rows(things, fitted.scene.references).values).max()), hold)
-        for hold in problem.holds
+        for hold in holds
         if hold.own in names
     ]
     worst, hold = max(off, key=lambda pair: pair[0])

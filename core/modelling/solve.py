@@ -8,10 +8,10 @@ from dataclasses import replace
 
 from ..arrays import positive
 from ..camera import Camera
-from ..cell import Cell, Reference
+from ..cell import Cell
 from ..errors import InvalidValue, PickError
 from ..primitives import Primitive
-from ..reference import ReferencePlane
+from ..reference import Reference, ReferencePlane
 from ..sketch import Sketch
 from .pick_fit import Modelled
 from .solve_box import solve_box
