@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What an honest hand picks of a table top: a plan and a way of picking in, sketches out.
 
-- `fewest`: three base corners of a box and one above them; of a can three points of its base rim
-  and one of its top rim
+- `fewest`: three base corners of a box and one above them; of a can three points of its base rim,
+  where a quarter of it is seen or more, and one of its top rim
 - `all`: every corner of a box that is seen; of a can ten points of what is seen of each rim and
   five of each silhouette line
 
@@ -31,6 +31,8 @@ from tabletop_plans import TabletopPlan
 
 PICK_SIGMA_PIXELS = 1.0
 WAYS = ("fewest", "all")
+# nobody takes three points of a shorter arc for a circle
+LEAST_TURN = np.pi / 2
 
 
 def sketches(
@@ -78,7 +80,15 @@ def _few_of_can(
 ) -> dict[str, Pixels] | None:
     """Three points of the base rim, as far apart as they are seen, and the nearest of the top."""
     rim, top = (rim_seen(can, side, eye, others) for side in (-1.0, 1.0))
-    if len(rim) < 3 or not len(top):
+    if not len(top) or _turn(can, rim) < LEAST_TURN:
         return None
     nearest = int(np.argmin(np.linalg.norm(top - eye, axis=1)))
     return {"rim": hand(spread(rim, 3)), "top": hand(top[[nearest]])}
+
+
+def _turn(can: Cylinder, rim: np.ndarray) -> float:
+    """The angle from the first to the last of points (N, 3) in order round a rim."""
+    if len(rim) < 3:
+        return 0.0
+    x, y, _ = can.world_from_object.inverse().apply(rim).T
+    return float(np.ptp(np.unwrap(np.arctan2(y, x))))
