@@ -8,6 +8,7 @@ OpenCV and are imported where they are used.
 from .appearance import Appearance
 from .camera import Camera
 from .cell import Cell
+from .composite import Composite
 from .distortion import Distortion
 from .errors import MonocellError
 from .intrinsics import Intrinsics
@@ -24,6 +25,7 @@ __all__ = [
     "Box",
     "Camera",
     "Cell",
+    "Composite",
     "Cone",
     "Cylinder",
     "Distortion",

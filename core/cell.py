@@ -3,16 +3,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from .bodies import rigid_bodies
 from .camera import Camera
+from .composite import Composite
 from .errors import InvalidValue, NoPose
 from .mount import Mount
 from .primitives import Primitive
 from .reference import PendingReference, Reference
 from .references.placed import reference_of_feature
+from .relation import RELATIONS, Relation
 from .sighting import Sighting
 from .sketch import Sketch
 
@@ -24,8 +27,10 @@ class Cell:
     `objects` are solved; `sketches` are picked only, and become objects when they are solved. A
     camera that rides on the robot has a `mount`; its `camera` stands as it stood for `picture`.
 
-    Raises InvalidValue when two references or two objects share a name, an object stands on a
-    reference that is not there, or a sighting does not tell what its kind of camera needs.
+    `composites` group objects and sketches.
+
+    Raises InvalidValue when two references or two objects share a name, an object is held by or
+    hangs on something that is not there, or a sighting does not tell what its kind of camera needs.
     """
 
     camera: Camera
@@ -36,9 +41,10 @@ class Cell:
     sketches: tuple[Sketch, ...] = ()
     folder: Path = Path()
     mount: Mount | None = None
+    composites: tuple[Composite, ...] = ()
 
     def __post_init__(self) -> None:
-        check_names(self.references, self.things)
+        check_names(self.references, self.things, self.composites)
         check_sightings(self.sightings, self.mount)
 
     @property
@@ -89,21 +95,58 @@ class Cell:
 
 
 def check_names(
-    references: Sequence[Reference | PendingReference], things: Sequence[Primitive | Sketch]
+    references: Sequence[Reference | PendingReference],
+    things: Sequence[Primitive | Sketch],
+    composites: Sequence[Composite] = (),
 ) -> None:
-    """Raises InvalidValue for two of one name, and for a thing on a reference that is not there.
+    """Raises InvalidValue for two of one name, and for a name that nothing is called by.
 
     Messages name the thing by its index, `objects[2].on`.
     """
     _refuse_twins("references", (reference.name for reference in references))
     _refuse_twins("objects", (thing.name for thing in things))
-    known = {reference.name for reference in references}
+    planes, names = [reference.name for reference in references], [thing.name for thing in things]
     for i, thing in enumerate(things):
-        if thing.on is not None and thing.on not in known:
-            listed = ", ".join(sorted(known)) or "none at all"
-            raise InvalidValue(
-                f"objects[{i}].on: no reference is called {thing.on!r}; there is {listed}"
-            )
+        where = f"objects[{i}]"
+        if thing.on is not None:
+            _check_path(thing.on, f"{where}.on", thing.name, planes, names)
+        for j, relation in enumerate(thing.relations):
+            _check_relation(relation, f"{where}.relations[{j}]", thing.name, planes, names)
+    rigid_bodies(things, composites)
+
+
+def feature_owner(path: str, names: Collection[str]) -> str | None:
+    """The object that a feature path such as `crate.top` speaks of; None when there is none."""
+    name, dot, feature = path.rpartition(".")
+    return name if dot and feature and name in names else None
+
+
+def _check_path(
+    path: str, where: str, own: str, references: Collection[str], names: Collection[str]
+) -> None:
+    """A reference, or a feature of an object other than `own`."""
+    if path in references:
+        return
+    owner = feature_owner(path, names)
+    if owner == own:
+        raise InvalidValue(f"{where}: {path!r} is its own feature; name something else")
+    if owner is None:
+        listed = ", ".join(sorted(references)) or "none at all"
+        if path in names:
+            listed = f"an object of that name: say which of its features, such as {path}.top"
+        raise InvalidValue(f"{where}: no reference is called {path!r}; there is {listed}")
+
+
+def _check_relation(
+    relation: Relation, where: str, own: str, references: Collection[str], names: Collection[str]
+) -> None:
+    if RELATIONS[relation.kind] != "object":
+        _check_path(relation.to, f"{where}.to", own, references, names)
+    elif relation.to == own or relation.to not in names:
+        told = "is the object itself" if relation.to == own else "is the name of no object"
+        raise InvalidValue(f"{where}.to: {relation.to!r} {told}; name another object")
+    if relation.about is not None:
+        _check_path(relation.about, f"{where}.about", own, references, names)
 
 
 def check_sightings(sightings: Sequence[Sighting], mount: Mount | None) -> None:

@@ -68,7 +68,9 @@ class Motion:
         length = float(np.linalg.norm(axis))
         if length < 1e-9:
             raise InvalidValue("motion.axis: has no length, so it gives no direction")
-        object.__setattr__(self, "axis", frozen(axis / length, (3,), "motion.axis"))
+        # a unit vector that was written and read again keeps its last digit
+        unit = axis if abs(length - 1) < 1e-15 else axis / length
+        object.__setattr__(self, "axis", frozen(unit, (3,), "motion.axis"))
         point = np.zeros(3) if self.point is None else self.point
         object.__setattr__(self, "point", frozen(point, (3,), "motion.point"))
         if self.limits is not None:

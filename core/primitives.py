@@ -11,6 +11,7 @@ import numpy as np
 from .arrays import Array, finite, frozen, positive
 from .errors import InvalidValue
 from .primitive import Picks, Primitive
+from .shape.polygons import crossing_sides
 
 # twice a polygon's area over its squared extent, below which it is no more than a line
 THINNEST_POLYGON = 1e-6
@@ -203,6 +204,13 @@ def _check_polygon(polygon: Array, name: str) -> None:
         raise InvalidValue(
             f"{name}: polygon: its corners lie on a line, cross, or go clockwise "
             f"(area {5e5 * double_area:.3g} mm^2); give them anticlockwise seen from above"
+        )
+    crossing = crossing_sides(polygon)
+    if crossing is not None:
+        i, j = crossing
+        raise InvalidValue(
+            f"{name}: polygon: the side from corner {i} meets the side from corner {j}; "
+            "give the corners in order round, each once"
         )
 
 

@@ -10,6 +10,7 @@ from typing import Any
 from ..atomic import atomic_path
 from ..camera import Camera
 from ..cell import Cell, check_names, check_sightings
+from ..composite import Composite
 from ..errors import DocumentError, InvalidValue
 from ..mount import Mount
 from ..primitives import Primitive
@@ -20,6 +21,8 @@ from .appearance_entries import with_pictures_moved
 from .entries import (
     camera_entry,
     camera_from_entry,
+    composite_entry,
+    composite_from_entry,
     object_entry,
     thing_from_entry,
 )
@@ -29,7 +32,7 @@ from .reference_entries import reference_entry, reference_from_entry
 from .sighting_entries import mount_entry, mount_from_entry, sighting_entry, sighting_from_entry
 
 VERSION = 1
-OPTIONAL = ("mount", "picture", "sightings", "references", "objects")
+OPTIONAL = ("mount", "picture", "sightings", "references", "objects", "composites")
 
 
 def read_cell(path: str | Path) -> Cell:
@@ -74,7 +77,11 @@ def cell_from_document(document: Any, folder: Path) -> Cell:
         for i, entry in enumerate(fields.items("sightings"))
     )
     mount = mount_from_entry(fields.raw("mount")) if fields.has("mount") else None
-    _check(references, things, sightings, mount)
+    composites = [
+        composite_from_entry(entry, f"composites[{i}]")
+        for i, entry in enumerate(fields.items("composites"))
+    ]
+    _check(references, things, composites, sightings, mount)
     camera = _camera(fields.raw("camera"), folder)
     return Cell(
         camera=camera if mount is None else _mounted(camera, mount),
@@ -85,6 +92,7 @@ def cell_from_document(document: Any, folder: Path) -> Cell:
         sketches=tuple(thing for thing in things if isinstance(thing, Sketch)),
         folder=folder,
         mount=mount,
+        composites=tuple(composites),
     )
 
 
@@ -106,18 +114,21 @@ def document_from_cell(cell: Cell, folder: Path) -> dict[str, Any]:
         with_pictures_moved(object_entry(thing), lambda name: _moved(name, cell.folder, folder))
         for thing in cell.things
     ]
+    if cell.composites:
+        document["composites"] = [composite_entry(composite) for composite in cell.composites]
     return document
 
 
 def _check(
     references: list[Reference | PendingReference],
     things: list[Primitive | Sketch],
+    composites: list[Composite],
     sightings: tuple[Sighting, ...],
     mount: Mount | None,
 ) -> None:
     """Here things still stand in the document's order, which messages count by."""
     try:
-        check_names(references, things)
+        check_names(references, things, composites)
         check_sightings(sightings, mount)
     except InvalidValue as error:
         raise DocumentError(str(error)) from None

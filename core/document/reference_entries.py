@@ -24,8 +24,8 @@ from ..references.sources import (
     ThroughPoints,
     Upright,
 )
-from .entries import Entry, named
 from .fields import Fields, items, keyed, number, shown, text, vector
+from .pose_entries import Entry, named
 
 # the key that holds a direction, and all keys of the place
 DIRECTION = {"plane": "normal", "line": "direction"}

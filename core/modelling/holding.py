@@ -47,11 +47,11 @@ class Hold:
 
     def rows(self, things: Mapping[str, Primitive], references: References) -> RelationRows:
         """The equations as things stand."""
-        about = None if self.about is None else _as_feature(self.about, things, references)
+        about = None if self.about is None else as_feature(self.about, things, references)
         to: Feature | Primitive = (
             things[self.to.name]
             if self.relation.kind in ("same_size", "symmetric")
-            else _as_feature(self.to, things, references)
+            else as_feature(self.to, things, references)
         )
         if about is not None and about.kind != "plane":
             raise InvalidValue(f"{self.own}: symmetric about a {about.kind}; name a plane")
@@ -108,7 +108,8 @@ def find_target(own: str, path: str, references: References, objects: Sequence[s
     raise InvalidValue(f"{own}: is held by {path!r}, which is not there; there is {known}")
 
 
-def _as_feature(target: Target, things: Mapping[str, Primitive], references: References) -> Feature:
+def as_feature(target: Target, things: Mapping[str, Primitive], references: References) -> Feature:
+    """The plane, line or point that a target is, as things stand; not of a whole object."""
     if not target.is_object:
         return reference_feature(references[target.name])
     assert target.feature is not None
