@@ -164,8 +164,9 @@ def _in_order(bodies: list[Body], things: Things, index: Mapping[str, int]) -> t
             )
         placed |= {i: len(placed) + n for n, i in enumerate(ready)}
         waiting = [i for i in waiting if i not in ready]
-    new_number: dict[int | None, int | None] = {None: None, **placed}
+    numbers: dict[int | None, int | None] = {None: None}
+    numbers.update(placed.items())
     return tuple(
-        replace(bodies[i], parent=new_number.get(parents[i]))
+        replace(bodies[i], parent=numbers[parents[i]])
         for i in sorted(placed, key=lambda i: placed[i])
     )

@@ -52,6 +52,11 @@ class Cell:
         """Objects, then sketches: the order in which a document lists them."""
         return (*self.objects, *self.sketches)
 
+    @property
+    def placed_references(self) -> tuple[Reference, ...]:
+        """The references that have a place."""
+        return tuple(r for r in self.references if not isinstance(r, PendingReference))
+
     def path_of(self, picture: str) -> Path:
         """The file of a picture named in the document."""
         return self.folder / picture

@@ -47,7 +47,7 @@ class Scene:
     def placed(self) -> dict[str, Primitive]:
         """The objects as they are now. Raises InvalidValue for a shape that can't be."""
         return {
-            name: self.solids[name].applied(thing, None) if name in self.solids else thing
+            name: self.solids[name].applied(thing) if name in self.solids else thing
             for name, thing in self.things.items()
         }
 
@@ -226,7 +226,7 @@ def with_noise(spread: Spread, start: Scene, scene: Scene, noise: Array) -> Scen
             references[name] = _moved_reference(references[name], by_noise @ noise)
         elif sort == "object" and name not in scene.solids:
             thing = things[name]
-            things[name] = Solid.of(thing).moved(by_noise @ noise).applied(thing, None)
+            things[name] = Solid.of(thing).moved(by_noise @ noise).applied(thing)
     return replace(scene, camera=camera, references=references, things=things, noise=noise)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from ...core.document.cell_file import read_cell, write_cell
 from ...core.document.entries import object_entry
 from ...core.errors import InvalidValue
-from ...core.modelling.pick_fit import Modelled
+from ...core.modelling.modelled import Modelled
 from ...core.modelling.solve import model_cell
 from ..told import millimetres, point_told, print_json, table, warn
 

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from monocell.core import Appearance, Box, Camera, Cell, Pose, ReferenceLine, Sketch
-from monocell.core.errors import InvalidValue, NoPose, PickError
+from monocell.core.errors import InvalidValue, NoPose
 from monocell.core.modelling.solve import model_cell, solve_sketch
 from picked_scene import (
     FLOOR,
@@ -45,7 +47,7 @@ def test_a_cell_of_sketches_is_solved_whole():
 def test_a_solved_object_keeps_what_the_operator_said():
     cam = camera()
     sketch = Sketch("block", "box", "floor", block_sketch(cam).picks, {"size_x": 0.2}, RED)
-    solved = solve_sketch(cam, sketch, FLOOR).object
+    solved = solve_sketch(cam, sketch, [FLOOR]).object
     assert (solved.name, solved.on, solved.appearance) == ("block", "floor", RED)
     assert solved.picks == sketch.picks
     assert solved.known == {"size_x": 0.2}
@@ -83,22 +85,23 @@ def test_objects_come_first_then_sketches_in_the_document_order():
 
 
 def test_a_reference_line_carries_no_box():
-    with pytest.raises(PickError, match="block: a box stands on a plane, and edge is a line"):
-        solve_sketch(camera(), block_sketch(camera()), EDGE)
+    on_edge = replace(block_sketch(camera()), on="edge")
+    with pytest.raises(InvalidValue, match="block: stands_on needs a plane, and edge is a line"):
+        solve_sketch(camera(), on_edge, [EDGE])
 
 
 def test_a_camera_without_pose_models_nothing():
     with pytest.raises(NoPose):
-        solve_sketch(Camera(camera().intrinsics), block_sketch(camera()), FLOOR)
+        solve_sketch(Camera(camera().intrinsics), block_sketch(camera()), [FLOOR])
 
 
 @pytest.mark.parametrize("sigma", [0.0, -1.0, float("nan")])
 def test_a_pick_noise_that_is_none_is_refused(sigma):
     with pytest.raises(InvalidValue, match="pick_sigma_pixels"):
-        solve_sketch(camera(), block_sketch(camera()), FLOOR, sigma)
+        solve_sketch(camera(), block_sketch(camera()), [FLOOR], (), sigma)
 
 
 def test_sigma_scales_what_picks_alone_determine():
-    one = solve_sketch(camera(), block_sketch(camera()), FLOOR, 1.0).object.size_sigma()
-    half = solve_sketch(camera(), block_sketch(camera()), FLOOR, 0.5).object.size_sigma()
+    one = solve_sketch(camera(), block_sketch(camera()), [FLOOR], (), 1.0).object.size_sigma()
+    half = solve_sketch(camera(), block_sketch(camera()), [FLOOR], (), 0.5).object.size_sigma()
     np.testing.assert_allclose(half, one / 2, rtol=1e-6)

@@ -19,6 +19,8 @@ from ..reverse_mapping import points_on_line
 
 # sine of a corner's angle below which three corners count as one line (6 degrees)
 COLLINEAR = 0.1
+# pixels by which a hand may miss
+SLIP = 5.0
 
 
 def turn_of(corners: Array, labels: Sequence[str]) -> float:
@@ -49,16 +51,17 @@ def refuse_line(labels: Sequence[str], i: int, sine: float) -> None:
 
 
 def refuse_crossing(picked: RolePicks) -> None:
-    """Raises PickError for four corners of a face that are not in order round it, as seen."""
+    """Raises PickError for four corners of a face that are not in order round it, as seen.
+
+    A face seen edge-on may cross itself by the error of a hand, which is no mistake.
+    """
     if len(picked) != 4:
         return
-    bends = [_bend(picked.pixels, i) for i in range(4)]
-    if min(bends) < -COLLINEAR and max(bends) > COLLINEAR:
+    a, b, c, d = picked.pixels
+    if _cross(a, b, c, d) or _cross(b, c, d, a):
         name, role = picked.labels[0].split(": ")
         face = role.split("[")[0]
-        raise PickError(
-            f"{name}: the {face} corners cross; pick them in order round the {face}"
-        )
+        raise PickError(f"{name}: the {face} corners cross; pick them in order round the {face}")
 
 
 def top_heights(camera: Camera, plane: ReferencePlane, corners: Array, top: RolePicks) -> Array:
@@ -88,3 +91,15 @@ def _bend(corners: Array, i: int) -> float:
     if lengths < 1e-12:
         return 0.0
     return float(one[0] * other[1] - one[1] * other[0]) / lengths
+
+
+def _cross(a: Array, b: Array, c: Array, d: Array) -> bool:
+    """Whether a-b and c-d cross, none of the four within a slip of the other line."""
+
+    def off(p: Array, q: Array, r: Array) -> float:
+        along = q - p
+        across = along[0] * (r[1] - p[1]) - along[1] * (r[0] - p[0])
+        return float(across) / max(float(np.linalg.norm(along)), 1e-12)
+
+    pairs = ((off(a, b, c), off(a, b, d)), (off(c, d, a), off(c, d, b)))
+    return all(one * other < 0 and min(abs(one), abs(other)) > SLIP for one, other in pairs)

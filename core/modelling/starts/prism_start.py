@@ -16,7 +16,7 @@ from .found import Starts, known_parameters, plane_of, rivals, things_of
 from .held import Held
 from .orientations import orientations
 from .roles import Picked, corner_plan, corners_seen
-from .trials import Trials, best
+from .trials import Trials
 
 
 def prism_starts(
@@ -40,41 +40,39 @@ def prism_starts(
         raise PickError(
             f"{sketch.name}: nothing tells its height; pick a corner of top, or give height"
         )
-    rotations, turn = orientations(held), 1.0
-    trials = _solved(camera, picked, held, known, rotations, turn)
-    if _doubled_area(trials.parameters[0]) < 0:
-        turn = -1.0
-        trials = _solved(camera, picked, held, known, rotations, turn)
+    turn, trials = _turned(camera, picked, held, known)
     _refuse_shape(sketch, picked, trials.parameters[0], turn)
     plan = corner_plan("prism", picked, turn, sigma_pixels)
     seen = corners_seen(camera, plan, "prism", held.parameters)
-    ended = descended_corners(trials, seen, held, known, 1) if len(rotations) > 1 else trials
-    if not len(ended):
-        ended = trials
+    ended = descended_corners(trials, seen, held, known, 1) if len(trials) > 1 else trials
+    possible = np.array([_doubled_area(p) > 0 and p[0] > 0 for p in ended.parameters], dtype=bool)
+    ended = ended.chosen(possible) if possible.any() else trials.chosen(np.array([0]))
     cost = corner_costs(ended, seen, held)
     return Starts(
         things_of(sketch, rivals(ended, cost, sigma_pixels)), plan, _grazing(camera, picked, held)
     )
 
 
-def _solved(
-    camera: Camera,
-    picked: Picked,
-    held: Held,
-    known: dict[int, float],
-    rotations: Array,
-    turn: float,
-) -> Trials:
-    """The solved orientations, best first."""
-    plan = corner_plan("prism", picked, turn, 1.0)
-    seen = corners_seen(camera, plan, "prism", held.parameters)
-    solved = solved_corners(rotations, seen, held, known)
+def _turned(
+    camera: Camera, picked: Picked, held: Held, known: dict[int, float]
+) -> tuple[float, Trials]:
+    """Which way round the corners go, and the solved orientations, best first.
 
-    def residuals(trials: Trials) -> Array:
-        return seen.residuals(trials)
-
-    ordered = best(solved, residuals, len(solved))
-    return ordered if len(ordered) else solved
+    Those that make no prism are left out, unless there is no other.
+    """
+    found = []
+    for turn in (1.0, -1.0):
+        plan = corner_plan("prism", picked, turn, 1.0)
+        seen = corners_seen(camera, plan, "prism", held.parameters)
+        solved = solved_corners(orientations(held), seen, held, known)
+        possible = np.array([_doubled_area(p) > 0 and p[0] > 0 for p in solved.parameters])
+        if possible.any():
+            solved = solved.chosen(possible)
+        cost = corner_costs(solved, seen, held)
+        order = np.argsort(cost, kind="stable")
+        found.append((not possible.any(), float(cost[order[0]]), turn, solved.chosen(order)))
+    _, _, turn, trials = min(found, key=lambda f: f[:2])
+    return turn, trials
 
 
 def _refuse_unseen(sketch: Sketch, picked: Picked) -> None:
