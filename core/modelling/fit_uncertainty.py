@@ -9,10 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..camera import Camera
 from ..covariance import inverse_information
 from ..errors import PickError
 from ..primitives import Primitive
-from .group_system import GroupSystem
+from .group_system import CAMERA, GroupSystem
+from .noise_sources import Key, factor
+
+# a sigma below this share of the largest (radians beside metres) is rounding
+DUST = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +52,30 @@ def noise_scale(chi_squared: float, spare: int) -> float:
         return 1.0
     reduced = chi_squared / spare
     return float(np.sqrt(reduced)) if reduced > 1.0 + 2.0 * float(np.sqrt(2.0 / spare)) else 1.0
+
+
+def without_dust(covariance: Array) -> Array:
+    """A covariance whose exact directions are exact: rounding leaves 1e-17 where zero is meant."""
+    sigma = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    kept = (sigma > DUST * max(float(sigma.max()), 1e-300)).astype(float)
+    clean: Array = 0.5 * (covariance + covariance.T) * np.outer(kept, kept)
+    return clean
+
+
+def by_camera_of(
+    by_noise: Array, layout: Sequence[tuple[Key, int]], camera: Camera
+) -> Array | None:
+    """How a tangent (T,) follows the camera's twist, (T, 6); None without its covariance."""
+    if camera.covariance is None:
+        return None
+    start = 0
+    for key, count in layout:
+        if key == CAMERA:
+            root = np.linalg.pinv(factor(camera.covariance))
+            moved: Array = by_noise[:, start : start + count] @ root
+            return moved
+        start += count
+    return np.zeros((len(by_noise), 6))
 
 
 def noise_covariance_of(systems: Iterable[GroupSystem], count: int) -> Array:

@@ -24,11 +24,11 @@ from .holding import Hold, References
 from .observed import Observe, Observed
 from .solid import Solid
 
-# what a metre (or radian) off a relation costs, in squared residuals
-HELD_PRICE = 1e7
-# a fit whose relations are off by less than this has still settled
+# a relation off by a tenth of a millimetre (or milliradian) is still near to where it was kept
 HELD_SIGMA = 1e-4
-RESTORING_STEPS = 4
+# what a metre (or radian) off a relation costs: more than any picks could gain by it, and in
+# proportion, because a square would let the picks buy the last micrometres
+HELD_COST = 1e6
 SETTLED_HOLD = 1e-9
 LARGEST_DAMPING, SMALLEST_DAMPING = 1e10, 1e-12
 
@@ -50,7 +50,7 @@ class Scene:
     def placed(self) -> dict[str, Primitive]:
         """The objects as they are now. Raises InvalidValue for a shape that can't be."""
         return {
-            name: self.solids[name].applied(thing, None) if name in self.solids else thing
+            name: self.solids[name].applied(thing) if name in self.solids else thing
             for name, thing in self.things.items()
         }
 
@@ -110,14 +110,12 @@ def fit_groups(problem: Problem, start: Scene, *, joint: bool, steps: int = 60) 
     here = _evaluated(problem, start)
     if here is None:
         return None
-    here = _kept(problem, start, here)
     damping = 1e-4
     for _ in range(steps):
         moves, noise, promised = _step(here.systems, here.scene.noise, damping, joint)
         if promised <= 1e-11 * (here.cost + 1e-12) and here.worst_hold < SETTLED_HOLD:
             return replace(here, settled=True)
         tried = _evaluated(problem, _moved(problem, here.scene, start, moves, noise))
-        tried = None if tried is None else _kept(problem, start, tried)
         if tried is not None and _merit(tried) <= _merit(here):
             here, damping = tried, max(damping * 0.1, SMALLEST_DAMPING)
         elif damping >= LARGEST_DAMPING:
@@ -127,27 +125,9 @@ def fit_groups(problem: Problem, start: Scene, *, joint: bool, steps: int = 60) 
     return here
 
 
-def _kept(problem: Problem, start: Scene, fitted: Fitted) -> Fitted:
-    """Brought back onto what holds the objects, which a long step leaves by its square.
-
-    Steps are then judged by their residuals alone: a price on what is off would stop them short.
-    """
-    for _ in range(RESTORING_STEPS):
-        if fitted.worst_hold < SETTLED_HOLD:
-            break
-        moves = [system.restored for system in fitted.systems]
-        scene = _moved(problem, fitted.scene, start, moves, np.zeros(problem.noise))
-        back = _evaluated(problem, scene)
-        if back is None or back.worst_hold > 0.5 * fitted.worst_hold:
-            break
-        fitted = back
-    return fitted
-
-
 def _merit(fitted: Fitted) -> float:
-    """The cost, with what is still off at a price that no residual can outbid."""
     held = sum(float(np.abs(s.held).sum()) for s in fitted.systems)
-    return fitted.cost + HELD_PRICE * held
+    return fitted.cost + HELD_COST * held
 
 
 def _evaluated(problem: Problem, scene: Scene) -> Fitted | None:
@@ -249,7 +229,7 @@ def with_noise(spread: Spread, start: Scene, scene: Scene, noise: Array) -> Scen
             references[name] = _moved_reference(references[name], by_noise @ noise)
         elif sort == "object" and name not in scene.solids:
             thing = things[name]
-            things[name] = Solid.of(thing).moved(by_noise @ noise).applied(thing, None)
+            things[name] = Solid.of(thing).moved(by_noise @ noise).applied(thing)
     return replace(scene, camera=camera, references=references, things=things, noise=noise)
 
 

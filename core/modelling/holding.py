@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from ..errors import InvalidValue
 from ..primitives import Primitive
 from ..reference import ReferenceLine, ReferencePlane
-from ..relation import Relation
+from ..relation import RELATIONS, Relation
 from ..shape.features import Feature, feature
 from ..sketch import Sketch
 from .held_rows import RelationRows
@@ -91,8 +91,15 @@ def holds_of(
             )
         if to.is_object and to.name == thing.name:
             raise InvalidValue(f"{thing.name}: {relation.kind} {relation.to!r}, which is itself")
+        _refuse_line(thing.name, relation, to, references)
         holds.append(Hold(thing.name, relation, to, about))
     return tuple(holds)
+
+
+def _refuse_line(own: str, relation: Relation, to: Target, references: References) -> None:
+    line = not to.is_object and isinstance(references[to.name], ReferenceLine)
+    if line and RELATIONS[relation.kind] == "plane":
+        raise InvalidValue(f"{own}: {relation.kind} needs a plane, and {relation.to} is a line")
 
 
 def find_target(own: str, path: str, references: References, objects: Sequence[str]) -> Target:

@@ -15,9 +15,18 @@ import numpy as np
 
 from ..arrays import Array
 from ..camera import Camera
+from ..covariance import propagated
 from ..errors import NotConverged, PickError
 from ..primitives import Primitive
-from .fit_uncertainty import Spreads, columns_of, noise_covariance_of, noise_scale, spreads_of
+from .fit_uncertainty import (
+    Spreads,
+    by_camera_of,
+    columns_of,
+    noise_covariance_of,
+    noise_scale,
+    spreads_of,
+    without_dust,
+)
 from .group_fit import Fitted, Problem, Scene, fit_groups
 from .group_order import in_order, together
 from .group_system import CAMERA
@@ -48,11 +57,15 @@ class FittedObject:
 
 @dataclass(frozen=True, eq=False)
 class ModelFit:
-    """All solved objects by name, the camera (moved only by a joint fit), and the fits' cost."""
+    """All solved objects by name, the camera (moved only by a joint fit), and the fits' cost.
+
+    `pull_sigmas` is how far a joint fit moves camera and references at most, in their own sigmas.
+    """
 
     objects: Mapping[str, FittedObject]
     camera: Camera
     chi_squared: float
+    pull_sigmas: float = 0.0
 
 
 def fit_model(
@@ -72,21 +85,21 @@ def fit_model(
     Raises PickError for an object that its picks and relations leave open, NotConverged for
     relations that contradict each other, InvalidValue for a relation to what is not there, NoPose.
     """
-    named = {thing.name: _with_known(thing) for thing in things}
-    wanted = [name for name in named if name in set(solve)]
+    solved = set(solve)
+    named = {t.name: _to_solve(t) if t.name in solved else t for t in things}
+    wanted = [name for name in named if name in solved]
     holds = [h for name in wanted for h in holds_of(named[name], references, list(named))]
     fitting = _Fitting(camera, references, named, observe, holds, wanted)
     return fitting.jointly() if joint else fitting.one_by_one()
 
 
-def _with_known(thing: Primitive) -> Primitive:
-    """The object with the sizes that were typed."""
-    if not thing.known:
-        return thing
+def _to_solve(thing: Primitive) -> Primitive:
+    """The object with the sizes that were typed, and without the errors of an earlier solution."""
     parameters = thing.parameters.copy()
     for name, value in thing.known.items():
         parameters[thing.size_names.index(name)] = value
-    return thing.with_parameters(parameters)
+    bare = replace(thing, covariance=None, by_camera=None)
+    return bare.with_parameters(parameters) if thing.known else bare
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +119,7 @@ class _Fitting:
             for groups, fitted, layout in self._level(level, things, sources):
                 for i, group in enumerate(groups):
                     spreads = spreads_of(fitted.systems[i], group, things)
-                    solved = _solved(fitted, i, group, spreads, np.eye(fitted.noise))
+                    solved = self._solved(fitted, i, group, spreads, layout)
                     sources = _remembered(sources, solved, group, spreads, layout, things)
                     done |= solved
                 chi_squared += fitted.cost
@@ -148,13 +161,40 @@ class _Fitting:
         done: dict[str, FittedObject] = {}
         for i, group in enumerate(groups):
             spreads = spreads_of(fitted.systems[i], group, self.things)
-            done |= _solved(fitted, i, group, spreads, noise_covariance)
+            done |= self._solved(fitted, i, group, spreads, layout, noise_covariance)
         camera = fitted.scene.camera
         if CAMERA in spread:
             camera = replace(
                 camera, covariance=spread[CAMERA] @ noise_covariance @ spread[CAMERA].T
             )
-        return ModelFit({name: done[name] for name in self.wanted}, camera, fitted.cost)
+        pull = float(np.abs(fitted.scene.noise).max(initial=0.0))
+        return ModelFit({name: done[name] for name in self.wanted}, camera, fitted.cost, pull)
+
+    def _solved(
+        self,
+        fitted: Fitted,
+        i: int,
+        group: Sequence[str],
+        spreads: Spreads,
+        layout: Layout,
+        noise_covariance: Array | None = None,
+    ) -> dict[str, FittedObject]:
+        """A group's objects with their errors; without a covariance the noise has its one sigma."""
+        system, scene = fitted.systems[i], fitted.scene
+        spare = len(system.seen) - system.free.shape[1]
+        scale = noise_scale(float(system.seen @ system.seen), spare)
+        shared: Array = np.eye(fitted.noise)
+        if noise_covariance is not None:
+            shared = noise_covariance
+        done = {}
+        for name, columns in columns_of(group, scene.things):
+            own, by_noise = spreads.own[columns] * scale, spreads.by_noise[columns]
+            whole = propagated(own, np.eye(own.shape[1])) + propagated(by_noise, shared)
+            thing = scene.solids[name].applied(scene.things[name])
+            by_camera = by_camera_of(by_noise, layout, self.camera)
+            thing = replace(thing, covariance=without_dust(whole), by_camera=by_camera)
+            done[name] = FittedObject(thing, fitted.observed[name], scale, fitted.settled)
+        return done
 
     def _keys(self, group: Sequence[str]) -> list[Key]:
         """All outside a group that it can be wrong with."""
@@ -203,22 +243,6 @@ def _remembered(
         by_noise = spreads.by_noise[columns]
         sources = sources.with_object(name, by_noise, layout, own, ("group", group[0]))
     return sources
-
-
-def _solved(
-    fitted: Fitted, i: int, group: Sequence[str], spreads: Spreads, noise_covariance: Array
-) -> dict[str, FittedObject]:
-    system = fitted.systems[i]
-    scale = noise_scale(float(system.seen @ system.seen), len(system.seen) - system.free.shape[1])
-    done = {}
-    for name, columns in columns_of(group, fitted.scene.things):
-        own, by_noise = spreads.own[columns] * scale, spreads.by_noise[columns]
-        covariance = own @ own.T + by_noise @ noise_covariance @ by_noise.T
-        thing = fitted.scene.solids[name].applied(
-            fitted.scene.things[name], 0.5 * (covariance + covariance.T)
-        )
-        done[name] = FittedObject(thing, fitted.observed[name], scale, fitted.settled)
-    return done
 
 
 def _refuse_contradictions(fitted: Fitted, holds: Iterable[Hold], names: Sequence[str]) -> None:

@@ -40,11 +40,12 @@ class NoiseSources:
         if camera.covariance is not None:
             maps[CAMERA] = {CAMERA: factor(camera.covariance)}
         for reference in references.values():
-            maps |= _of_reference(reference, camera)
+            key = ("reference", reference.name)
+            maps |= _of_covariance(key, reference.covariance, reference.by_camera, camera)
         for thing in things:
-            if thing.covariance is not None:
-                key = ("object", thing.name)
-                maps[key] = {key: factor(thing.covariance)}
+            maps |= _of_covariance(
+                ("object", thing.name), thing.covariance, thing.by_camera, camera
+            )
         return NoiseSources(maps)
 
     def spread(self, keys: Iterable[Key]) -> tuple[dict[Key, Array], tuple[tuple[Key, int], ...]]:
@@ -80,17 +81,16 @@ def factor(covariance: Array) -> Array:
     return whole
 
 
-def _of_reference(reference: object, camera: Camera) -> dict[Key, dict[Key, Array]]:
-    covariance = getattr(reference, "covariance", None)
+def _of_covariance(
+    key: Key, covariance: Array | None, by_camera: Array | None, camera: Camera
+) -> dict[Key, dict[Key, Array]]:
+    """What is shared with the camera, and the rest as the thing's own."""
     if covariance is None:
         return {}
-    key = ("reference", str(getattr(reference, "name", "")))
-    by_camera = getattr(reference, "by_camera", None)
     if by_camera is None or camera.covariance is None:
         return {key: {key: factor(covariance)}}
     shared = by_camera @ factor(camera.covariance)
-    rest = covariance - shared @ shared.T
-    return {key: {CAMERA: shared, key: factor(_positive(rest))}}
+    return {key: {CAMERA: shared, key: factor(_positive(covariance - shared @ shared.T))}}
 
 
 def _positive(matrix: Array) -> Array:

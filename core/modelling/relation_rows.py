@@ -55,7 +55,7 @@ def reference_feature(reference: ReferencePlane | ReferenceLine) -> Feature:
 def _stands(relation: Relation, own: Primitive, to: Feature) -> RelationRows:
     if own.kind == "sphere":
         return _touches(relation, own, to)
-    return _flush(own, feature(own, relation.own or "base"), to)
+    return _flush(relation, own, feature(own, relation.own or "base"), to)
 
 
 def _lies(relation: Relation, own: Primitive, to: Feature) -> RelationRows:
@@ -72,7 +72,7 @@ def _lies(relation: Relation, own: Primitive, to: Feature) -> RelationRows:
 def _leans(relation: Relation, own: Primitive, to: Feature) -> RelationRows:
     if relation.own is None:
         return _touches(relation, own, to)
-    return _flush(own, feature(own, relation.own), to)
+    return _flush(relation, own, feature(own, relation.own), to)
 
 
 def _touches(relation: Relation, own: Primitive, to: Feature) -> RelationRows:
@@ -83,7 +83,7 @@ def _touches(relation: Relation, own: Primitive, to: Feature) -> RelationRows:
         return _points_on_plane(*lowest_points(own, -to.direction, both_ends=False), to)
     part = feature(own, relation.own)
     if part.kind == "plane":
-        return _flush(own, part, to)
+        return _flush(relation, own, part, to)
     rows = _points_on_plane(part.point[None], part.by_point[None], to)
     if part.kind == "point":
         return rows
@@ -157,10 +157,14 @@ def _centred(relation: Relation, own: Primitive, to: Feature) -> RelationRows:
     )
 
 
-def _flush(own: Primitive, face: Feature, to: Feature) -> RelationRows:
+def _flush(relation: Relation, own: Primitive, face: Feature, to: Feature) -> RelationRows:
     """A face against a plane: its middle on the plane, its normal along the plane's."""
-    if face.kind != "plane" or to.kind != "plane":
-        raise InvalidValue(f"{own.name}: only a face lies flush on a plane, not a {to.kind}")
+    _need(own, relation, to, "plane")
+    if face.kind != "plane":
+        raise InvalidValue(
+            f"{own.name}: {relation.kind} {relation.to} with its {relation.own}, which is a "
+            f"{face.kind}; only a face lies flush on a plane"
+        )
     same = 1.0 if face.direction @ to.direction > 0 else -1.0
     turned = _stacked_rows(face, to, across_of(to.direction), -same)
     placed = _points_on_plane(face.point[None], face.by_point[None], to)

@@ -43,14 +43,10 @@ class Solid(NamedTuple):
             parameters = np.concatenate([parameters[:1], (polygon - centre).ravel()])
         return Solid(self.kind, rotation, place, parameters)
 
-    def applied(self, thing: Primitive, covariance: Array | None) -> Primitive:
+    def applied(self, thing: Primitive) -> Primitive:
         """`thing` with this place and shape. Raises InvalidValue for a shape that can't be."""
-        shaped = thing if covariance is None else replace(thing, covariance=None)
-        placed = replace(
-            shaped.with_parameters(self.parameters),
-            world_from_object=Pose(self.rotation, self.place),
-        )
-        return placed if covariance is None else replace(placed, covariance=covariance)
+        pose = Pose(self.rotation, self.place)
+        return replace(thing.with_parameters(self.parameters), world_from_object=pose)
 
     def eye(self, centre_world: Array) -> Array:
         """A world point (3,) in the solid's frame."""

@@ -44,7 +44,7 @@ def nudged(thing, rng, size=0.01):
     step = rng.normal(0, size, 6 + len(thing.parameters))
     for name in thing.known:
         step[6 + thing.size_names.index(name)] = 0.0
-    return Solid.of(thing).moved(step).applied(thing, None)
+    return Solid.of(thing).moved(step).applied(thing)
 
 
 def seen_corners(thing, count=7):

@@ -64,7 +64,7 @@ def moved(thing, step):
     if isinstance(thing, ReferenceLine):
         turn = rotation_from_vector(step[:3])
         return ReferenceLine(thing.name, thing.point + step[3:], turn @ thing.direction)
-    return Solid.of(thing).moved(step).applied(thing, None)
+    return Solid.of(thing).moved(step).applied(thing)
 
 
 def target(relation, thing):
@@ -191,7 +191,7 @@ def test_mirror_images_have_the_derivatives_they_state(about):
         ("box", Relation("lies_on", "ramp"), PLANE, "own: a box does not lie on its side"),
         ("box", Relation("touches", "pole"), LINE, "a box touches a plane, and pole is a line"),
         ("sphere", Relation("parallel", "pole"), LINE, "a sphere has no axis to be parallel"),
-        ("box", Relation("stands_on", "pole"), LINE, "lies flush on a plane, not a line"),
+        ("box", Relation("stands_on", "pole"), LINE, "stands_on needs a plane, and pole is a line"),
         ("cylinder", Relation("lies_on", "pole"), LINE, "needs a plane, and pole is a line"),
         ("box", Relation("stands_on", "ramp", own="front"), PLANE, "has no feature 'front'"),
     ],

@@ -102,9 +102,7 @@ def _standing(plane: ReferencePlane, middle: Array, yaw: float, sizes: Array) ->
     return Trials((frame.rotation @ turned)[None], place[None], sizes[None])
 
 
-def _from_any(
-    camera: Camera, sketch: Sketch, picked: Picked, held: Held, sigma: float
-) -> Starts:
+def _from_any(camera: Camera, sketch: Sketch, picked: Picked, held: Held, sigma: float) -> Starts:
     known = known_parameters(sketch, held)
     if not has_scale(held, known):
         raise PickError(
@@ -144,5 +142,3 @@ def _refuse_negative(sketch: Sketch, trials: Trials) -> None:
         f"{1e3 * sizes[worst]:.1f} mm; check that top is above base, and the side the normal points "
         "to"
     )
-
-

@@ -26,9 +26,7 @@ DESCENTS, STEPS = 8, 12
 RIDGE = 1e-12
 
 
-def solved_corners(
-    rotations: Array, seen: Seen, held: Held, known: Mapping[int, float]
-) -> Trials:
+def solved_corners(rotations: Array, seen: Seen, held: Held, known: Mapping[int, float]) -> Trials:
     """The guesses (M,) whose place and parameters fit the rays best, one for each orientation.
 
     `known` are parameters by their index. Sizes may come out negative.
@@ -111,7 +109,9 @@ def _equations(rotations: Array, seen: Seen, held: Held) -> tuple[Array, Array]:
             rows = rows.reshape(count, -1, held.parameters)
             if grip.kind in ("leans_on", "touches") and grip.own is None:
                 rows = -np.abs(np.einsum("i,mij->mj", grip.to.direction, rotations))[:, None] / 2
-            where = np.broadcast_to(np.tile(directions, (len(points), 1)), (count, rows.shape[1], 3))
+            where = np.broadcast_to(
+                np.tile(directions, (len(points), 1)), (count, rows.shape[1], 3)
+            )
             level = np.tile(directions @ (grip.to.point - seen.origin), len(points))
             left.append(HOLD_WEIGHT * np.concatenate([where, rows], axis=2))
             right.append(HOLD_WEIGHT * np.broadcast_to(level, (count, rows.shape[1])))

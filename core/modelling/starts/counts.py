@@ -16,9 +16,7 @@ MOST = {"sides": 2, "outline": 3}
 WORDS = {"sides": "side"}
 
 
-def refuse_too_few(
-    sketch: Sketch, picked: Picked, held: Held, known: Mapping[int, float]
-) -> None:
+def refuse_too_few(sketch: Sketch, picked: Picked, held: Held, known: Mapping[int, float]) -> None:
     """Raises PickError with the count of equations and what is open, where they can't suffice.
 
     It counts only: picks that are enough by number may still say the same thing twice, which the

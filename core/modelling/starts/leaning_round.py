@@ -40,9 +40,7 @@ def round_places(seen: Seen, held: Held, known: Mapping[int, float]) -> Trials:
     parts = []
     for radius in radii:
         size = np.full(len(depths), radius) if 0 in known else radius * depths
-        parts.append(
-            _at_depths(seen, held, known, directions, depths, size, (first, second))
-        )
+        parts.append(_at_depths(seen, held, known, directions, depths, size, (first, second)))
     return Trials.joined(parts)
 
 
@@ -179,5 +177,3 @@ def _depths(
             found.append(float(along @ out / max(float(along @ along), 1e-9)))
     positive = [depth for depth in found if depth > 0]
     return positive or [1.0]
-
-

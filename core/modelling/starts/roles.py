@@ -102,7 +102,10 @@ def round_plan(picked: Picked, facing: float, sigma_pixels: float) -> PickPlan:
         ("apex",) * len(points),
         np.concatenate([picked[role].pixels for role in roles]),
         tuple(curves[role] for role in roles for _ in picked[role].places),
-        (*(() if apex is None else apex.labels), *(n for role in roles for n in picked[role].labels)),
+        (
+            *(() if apex is None else apex.labels),
+            *(n for role in roles for n in picked[role].labels),
+        ),
         sigma_pixels,
     )
 
