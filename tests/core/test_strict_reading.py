@@ -216,7 +216,10 @@ def test_a_list_of_another_length_is_refused_by_its_path(path, change):
         listed.pop()
     else:
         listed.append(copy.deepcopy(listed[-1]))
-    assert names_the_place(refusal_of(document), path)
+    told = refusal_of(document)
+    # a corner more or less needs another covariance
+    counted = path[-1] == "polygon" and told.startswith(written((*path[:-1], "covariance")))
+    assert names_the_place(told, path) or counted
 
 
 def test_twins_and_orphans_are_named_by_their_place_in_the_document():
