@@ -26,7 +26,7 @@ def add_modelled(context: Any, kind: str, name: str, on: str, picks: str) -> Any
     on = on or cell.references[scene.monocell_cell.reference_index].name
     sketch = Sketch(name or free_name(cell, kind), kind, on, _parsed(picks, kind))
     sigma = scene.monocell_inputs.pick_sigma_pixels
-    modelled = solve_sketch(cell.camera, sketch, cell.reference(on), sigma)
+    modelled = solve_sketch(cell.camera, sketch, cell.placed_references, cell.objects, sigma)
     # refuses a name that is taken, before anything is built
     cell.with_objects((*cell.objects, modelled.object))
     ob = build_object(modelled.object, objects_collection(scene))

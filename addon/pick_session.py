@@ -88,7 +88,7 @@ class PickSession:
 
         known = {} if self.complete else self.plan.flat
         sketch = Sketch(PREVIEW, self.plan.kind, self.plane.name, self.picks(), known)
-        thing = solve_sketch(self.camera, sketch, self.plane).object
+        thing = solve_sketch(self.camera, sketch, [self.plane]).object
         lines = wireframe(thing, self._pinhole_camera())
         return Preview(lines, caption(thing) if self.complete else place, "")
 

@@ -13,13 +13,13 @@ from .composite import Composite
 from .errors import InvalidValue, NoPose
 from .mount import Mount
 from .primitives import KINDS, Primitive
-from .reference import ReferenceLine, ReferencePlane
+from .reference import PendingReference, Reference
+from .references.placed import reference_of_feature
 from .relation import RELATIONS, Relation
 from .shape.features import feature_names
 from .sighting import Sighting
 from .sketch import Sketch
 
-Reference = ReferencePlane | ReferenceLine
 Named = Mapping[str, Primitive | Sketch]
 
 
@@ -39,7 +39,7 @@ class Cell:
     camera: Camera
     picture: str | None = None
     sightings: tuple[Sighting, ...] = ()
-    references: tuple[Reference, ...] = ()
+    references: tuple[Reference | PendingReference, ...] = ()
     objects: tuple[Primitive, ...] = ()
     sketches: tuple[Sketch, ...] = ()
     folder: Path = Path()
@@ -54,6 +54,15 @@ class Cell:
     def things(self) -> tuple[Primitive | Sketch, ...]:
         """Objects, then sketches: the order in which a document lists them."""
         return (*self.objects, *self.sketches)
+
+    @property
+    def placed_references(self) -> tuple[Reference, ...]:
+        """The references that have a place."""
+        return tuple(r for r in self.references if not isinstance(r, PendingReference))
+
+    def in_use(self) -> Cell:
+        """The cell with those of its sightings only that are not switched off."""
+        return replace(self, sightings=tuple(s for s in self.sightings if s.use))
 
     def path_of(self, picture: str) -> Path:
         """The file of a picture named in the document."""
@@ -82,15 +91,23 @@ class Cell:
         return replace(self, objects=tuple(objects))
 
     def reference(self, name: str) -> Reference:
-        """The reference of that name. Raises InvalidValue."""
+        """The reference of that name, or the face, edge or axis of a solved object (`crate.top`).
+
+        Raises InvalidValue for a name that is not there, or has no place yet.
+        """
         for reference in self.references:
             if reference.name == name:
+                if isinstance(reference, PendingReference):
+                    raise InvalidValue(
+                        f"{name}: has no place yet: resolve the references, and model the objects "
+                        "they are made from"
+                    )
                 return reference
-        raise InvalidValue(f"no reference is called {name!r}")
+        return reference_of_feature(self.things, name, self.camera)
 
 
 def check_names(
-    references: Sequence[Reference],
+    references: Sequence[Reference | PendingReference],
     things: Sequence[Primitive | Sketch],
     composites: Sequence[Composite] = (),
 ) -> None:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -28,6 +30,32 @@ def propagated(jacobian: Array, covariance: Array) -> Array:
     """`J C J^T` over leading dimensions: (..., m, n) and (n, n) to (..., m, m)."""
     result: Array = jacobian @ covariance @ np.swapaxes(jacobian, -1, -2)
     return result
+
+
+def remainder(covariance: Array, share: Array) -> Array:
+    """What is left of a covariance without a part of it that is told apart, both (N, N).
+
+    A share that is larger somewhere, as after another calibration, leaves nothing there.
+    """
+    scale = np.sqrt(np.maximum(np.diag(covariance), np.diag(share)))
+    unit = np.where(scale > 0, scale, 1.0)
+    values, vectors = np.linalg.eigh((covariance - share) / np.outer(unit, unit))
+    rest: Array = (vectors * np.maximum(values, 0.0)) @ vectors.T * np.outer(unit, unit)
+    return rest
+
+
+def bound_of_sum(parts: Sequence[Array]) -> Array:
+    """An upper bound (..., N, N) of the covariance of a sum whose terms may be correlated anyhow.
+
+    `sum C_i / w_i` with weights that sum to 1 is one for every choice of them (covariance
+    intersection, Julier and Uhlmann 1997); here they give the least trace: sigmas add up.
+    """
+    sigmas = np.sqrt(np.array([np.trace(part, axis1=-2, axis2=-1) for part in parts]))
+    whole = sigmas.sum(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        weights = np.where(sigmas > 0, whole / sigmas, 0.0)
+    bound: Array = (np.array(parts) * weights[..., None, None]).sum(axis=0)
+    return bound
 
 
 def inverse_information(information: Array) -> Array | None:

@@ -80,3 +80,7 @@ class InCollision(MonocellError):
 
 class NoPath(MonocellError):
     """No path was found that keeps its distance from everything."""
+
+
+class DegenerateReference(MonocellError):
+    """What a reference was made from leaves its place open, or leads back to the reference."""

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from .appearance import Appearance
-from .arrays import Array
+from .arrays import Array, frozen
 from .covariance import checked_covariance
 from .errors import InvalidValue
 from .motion import Motion
@@ -36,6 +36,8 @@ class Primitive:
     `Pose.perturbed` but with the rotation taken about the object's own origin, then the
     parameters): its first three rows are the rotation vector in world axes (radians), the next
     three the origin's position (metres).
+    `by_camera` (6 + P, 6) says how all of these follow the camera's twist when the picks stay: the
+    part of the covariance that everything seen through the camera shares. None where not known.
     """
 
     name: str
@@ -47,6 +49,7 @@ class Primitive:
     appearance: Appearance | None = field(default=None, kw_only=True)
     motion: Motion = field(default_factory=Motion, kw_only=True)
     covariance: Array | None = field(default=None, kw_only=True)
+    by_camera: Array | None = field(default=None, kw_only=True)
 
     kind: ClassVar[str]
     size_names: ClassVar[tuple[str, ...]]
@@ -58,6 +61,10 @@ class Primitive:
             rows = 6 + len(self.parameters)
             matrix = checked_covariance(self.covariance, rows, f"{self.name}: covariance")
             object.__setattr__(self, "covariance", matrix)
+        if self.by_camera is not None:
+            rows = 6 + len(self.parameters)
+            by_camera = frozen(self.by_camera, (rows, 6), f"{self.name}: by_camera")
+            object.__setattr__(self, "by_camera", by_camera)
 
     @property
     def sizes(self) -> Array:

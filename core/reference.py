@@ -7,13 +7,15 @@ single picture can't, the depth.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from .arrays import Array, frozen
+from .covariance import checked_covariance
 from .errors import InvalidValue
 from .pose import Pose
+from .references.sources import Source
 
 # sine of the tilt (about 2 degrees) up to which a plane counts as a floor
 NEARLY_LEVEL = 0.03
@@ -21,15 +23,28 @@ NEARLY_LEVEL = 0.03
 
 @dataclass(frozen=True, eq=False)
 class ReferencePlane:
-    """The plane through `point` (3,) with unit `normal` (3,), in the world (paper eq. 18)."""
+    """The plane through `point` (3,) with unit `normal` (3,), in the world (paper eq. 18).
+
+    `covariance` (6, 6) is on (rotation vector in world axes about its point, motion of the point),
+    zero for a motion that changes nothing: along the plane, about its normal. None when no error is
+    stated. `source` is what it was made from, None for a plane that was given in the world.
+
+    `by_camera` (6, 6) says how it follows the camera's twist (`Pose.perturbed`): what was made
+    through the camera shares the camera's error, and `covariance` includes that share. None stands
+    for not at all where there is no source, and for not known where there is one.
+    """
 
     name: str
     point: Array
     normal: Array
+    covariance: Array | None = field(default=None, kw_only=True)
+    by_camera: Array | None = field(default=None, kw_only=True)
+    source: Source | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "point", frozen(self.point, (3,), f"{self.name}: point"))
         object.__setattr__(self, "normal", _unit(self.normal, f"{self.name}: normal"))
+        _check_error(self)
 
     @property
     def world_from_plane(self) -> Pose:
@@ -48,16 +63,62 @@ class ReferencePlane:
 
 @dataclass(frozen=True, eq=False)
 class ReferenceLine:
-    """The line through `point` (3,) along unit `direction` (3,), in the world (paper eq. 19)."""
+    """The line through `point` (3,) along unit `direction` (3,), in the world (paper eq. 19).
+
+    `covariance`, `by_camera` and `source` are as a plane's; what changes nothing here is a motion
+    along the line and a rotation about it.
+    """
 
     name: str
     point: Array
     direction: Array
+    covariance: Array | None = field(default=None, kw_only=True)
+    by_camera: Array | None = field(default=None, kw_only=True)
+    source: Source | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "point", frozen(self.point, (3,), f"{self.name}: point"))
         direction = _unit(self.direction, f"{self.name}: direction")
         object.__setattr__(self, "direction", direction)
+        _check_error(self)
+
+
+@dataclass(frozen=True, eq=False)
+class PendingReference:
+    """A plane or line (`kind`) whose source is known and whose place is not worked out yet."""
+
+    name: str
+    kind: str
+    source: Source
+
+    def __post_init__(self) -> None:
+        if self.kind not in self.source.makes:
+            raise InvalidValue(
+                f"{self.name}: {self.source.way!r} makes a {' or '.join(self.source.makes)}, "
+                f"not a {self.kind}"
+            )
+
+
+Reference = ReferencePlane | ReferenceLine
+
+
+def kind_of(reference: Reference | PendingReference) -> str:
+    """`plane` or `line`."""
+    if isinstance(reference, PendingReference):
+        return reference.kind
+    return "plane" if isinstance(reference, ReferencePlane) else "line"
+
+
+def _check_error(reference: Reference) -> None:
+    name = reference.name
+    if reference.source is not None:
+        PendingReference(name, kind_of(reference), reference.source)
+    if reference.covariance is not None:
+        matrix = checked_covariance(reference.covariance, 6, f"{name}: covariance")
+        object.__setattr__(reference, "covariance", matrix)
+    if reference.by_camera is not None:
+        matrix = frozen(reference.by_camera, (6, 6), f"{name}: by_camera")
+        object.__setattr__(reference, "by_camera", matrix)
 
 
 def _unit(vector: Array, name: str) -> Array:

@@ -41,7 +41,9 @@ class Sketch:
                 raise InvalidValue(
                     f"{self.name}: a {self.kind} has no size {size!r}; it has {', '.join(sizes)}"
                 )
-            positive(value, f"{self.name}: known {size}")
+            # a cone that is known to end in a point
+            if (self.kind, size, value) != ("cone", "top_radius", 0):
+                positive(value, f"{self.name}: known {size}")
 
     @staticmethod
     def of(thing: Primitive) -> Sketch:

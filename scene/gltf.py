@@ -9,7 +9,7 @@ is a node without mesh above the nodes of its parts.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,8 @@ import bpy
 from ..core.atomic import atomic_path
 from ..core.camera import Camera
 from ..core.cell import Cell
-from ..core.document.entries import camera_entry, composite_entry, object_entry, reference_entry
+from ..core.document.entries import camera_entry, composite_entry, object_entry
+from ..core.document.reference_entries import reference_entry
 from ..core.errors import InvalidValue, RenderFailed
 from ..core.links import without_lost_joints
 from ..core.primitives import Primitive
@@ -29,6 +30,7 @@ from .glb_names import named_by_their_entries
 from .materials import PLAIN, surface
 from .meshes import fill_mesh
 from .quiet import quiet_stdout
+from .textures import is_textured, painted_mesh
 from .transforms import stand
 
 CAMERA_NODE = "camera"
@@ -41,8 +43,9 @@ def export_gltf(cell: Cell, path: str | Path) -> None:
     """Write a binary glTF (`.glb`) of the cell's objects and camera, whole or not at all.
 
     Everything is built in a Blender scene of its own that is gone afterwards; the user's scene
-    stays as it was, and active. Raises InvalidValue for another ending than .glb, DocumentError
-    when the file can't be written, RenderFailed when the exporter gives none.
+    stays as it was, and active. Textures are embedded. Raises InvalidValue for another ending than
+    .glb, DocumentError when the file can't be written, PictureError for a texture that can't be
+    read, RenderFailed when the exporter gives none.
     """
     if Path(path).suffix.lower() != ".glb":
         raise InvalidValue(f"{path}: a glTF export is one binary file; name it .glb")
@@ -92,6 +95,11 @@ def _build_objects(scene: Any, cell: Cell, built: list[Any]) -> None:
     meshes: dict[tuple[Any, ...], Any] = {}
     parents = _build_composites(scene, cell, built)
     for thing in cell.objects:
+        if is_textured(thing):
+            mesh, made = painted_mesh(thing, cell.folder)
+            built += made
+            _stand(scene, thing, mesh, parents, built)
+            continue
         color = tuple(PLAIN if thing.appearance is None else thing.appearance.color)
         key = (thing.kind, *thing.parameters, *color)
         if color not in materials:
@@ -100,13 +108,19 @@ def _build_objects(scene: Any, cell: Cell, built: list[Any]) -> None:
         if key not in meshes:
             meshes[key] = _mesh(thing, materials[color])
             built.append(meshes[key])
-        ob = bpy.data.objects.new(thing.name, meshes[key])
-        built.append(ob)
-        stand(ob, thing.world_from_object)
-        ob["monocell"] = object_entry(thing, with_picks=False)
-        # a composite's own node stands at the world's origin, and moves no part of it
-        ob.parent = parents.get(thing.name)
-        scene.collection.objects.link(ob)
+        _stand(scene, thing, meshes[key], parents, built)
+
+
+def _stand(
+    scene: Any, thing: Primitive, mesh: Any, parents: Mapping[str, Any], built: list[Any]
+) -> None:
+    ob = bpy.data.objects.new(thing.name, mesh)
+    built.append(ob)
+    stand(ob, thing.world_from_object)
+    ob["monocell"] = object_entry(thing, with_picks=False)
+    # a composite's own node stands at the world's origin, and moves no part of it
+    ob.parent = parents.get(thing.name)
+    scene.collection.objects.link(ob)
 
 
 def _build_composites(scene: Any, cell: Cell, built: list[Any]) -> dict[str, Any]:
@@ -156,5 +170,5 @@ def _export(path: Path) -> None:
             export_animations=False,
             export_skins=False,
             export_morph=False,
-            export_texcoords=False,
+            export_texcoords=True,
         )

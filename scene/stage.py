@@ -30,6 +30,7 @@ from .meshes import fill_mesh
 from .panel import STUB_RADIUS, build_panel, remove_print, stub_centre
 from .rendering import render_linear, render_picture, render_window
 from .room import build_room
+from .textures import is_textured, painted_mesh
 from .transforms import matrix_of
 from .work_cell import Ball, Panel, WorkCell
 
@@ -49,6 +50,7 @@ class Stage(Closing):
         self._ball: Any = None
         self._gripper: list[Any] = []
         self._panel: list[Any] = []
+        self._images: list[Any] = []
         # what did not move is not sent to Cycles again
         self.scene.render.use_persistent_data = True
         build_room(self.scene, cell)
@@ -115,12 +117,19 @@ class Stage(Closing):
         obs, world = list(self.scene.collection.all_objects), self.scene.world
         bpy.data.scenes.remove(self.scene)
         _remove(obs)
+        bpy.data.batch_remove(self._images)
         bpy.data.worlds.remove(world)
 
     def _add_object(self, thing: Primitive) -> None:
-        color = PLAIN if thing.appearance is None else tuple(thing.appearance.color)
-        material = surface(thing.name, color, roughness=0.38)
-        ob = self._add(thing.name, tessellated(thing), material)
+        if is_textured(thing):
+            mesh, made = painted_mesh(thing, self.cell.folder)
+            # the rest goes with its object
+            self._images += [each for each in made if isinstance(each, bpy.types.Image)]
+            ob = self._link(thing.name, mesh)
+        else:
+            color = PLAIN if thing.appearance is None else tuple(thing.appearance.color)
+            material = surface(thing.name, color, roughness=0.38)
+            ob = self._add(thing.name, tessellated(thing), material)
         ob.matrix_world = matrix_of(thing.world_from_object)
 
     def _show_ball(self, ball: Ball | None) -> None:
@@ -164,6 +173,9 @@ class Stage(Closing):
         mesh = bpy.data.meshes.new(name)
         fill_mesh(mesh, shape)
         mesh.materials.append(material)
+        return self._link(name, mesh)
+
+    def _link(self, name: str, mesh: Any) -> Any:
         ob = bpy.data.objects.new(name, mesh)
         self.scene.collection.objects.link(ob)
         return ob

@@ -9,25 +9,26 @@ from typing import Any
 
 from ..atomic import atomic_path
 from ..camera import Camera
-from ..cell import Cell, Reference, check_names, check_sightings
+from ..cell import Cell, check_names, check_sightings
 from ..composite import Composite
 from ..errors import DocumentError, InvalidValue
 from ..mount import Mount
 from ..primitives import Primitive
+from ..reference import PendingReference, Reference
 from ..sighting import Sighting
 from ..sketch import Sketch
+from .appearance_entries import with_pictures_moved
 from .entries import (
     camera_entry,
     camera_from_entry,
     composite_entry,
     composite_from_entry,
     object_entry,
-    reference_entry,
-    reference_from_entry,
     thing_from_entry,
 )
 from .fields import keyed, text
 from .json_text import dumped, parse_json
+from .reference_entries import reference_entry, reference_from_entry
 from .sighting_entries import mount_entry, mount_from_entry, sighting_entry, sighting_from_entry
 
 VERSION = 1
@@ -109,14 +110,17 @@ def document_from_cell(cell: Cell, folder: Path) -> dict[str, Any]:
         for sighting in cell.sightings
     ]
     document["references"] = [reference_entry(reference) for reference in cell.references]
-    document["objects"] = [object_entry(thing) for thing in cell.things]
+    document["objects"] = [
+        with_pictures_moved(object_entry(thing), lambda name: _moved(name, cell.folder, folder))
+        for thing in cell.things
+    ]
     if cell.composites:
         document["composites"] = [composite_entry(composite) for composite in cell.composites]
     return document
 
 
 def _check(
-    references: list[Reference],
+    references: list[Reference | PendingReference],
     things: list[Primitive | Sketch],
     composites: list[Composite],
     sightings: tuple[Sighting, ...],

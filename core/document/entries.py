@@ -11,11 +11,8 @@ from typing import Any
 import numpy as np
 
 from ..camera import Camera
-from ..cell import Reference
 from ..distortion import Distortion
-from ..errors import DocumentError
 from ..intrinsics import Intrinsics
-from ..reference import ReferenceLine, ReferencePlane
 from .fields import Fields, keyed, number
 from .motion_entries import composite_entry, composite_from_entry
 from .object_entries import object_entry, object_from_entry, thing_from_entry
@@ -59,29 +56,6 @@ def camera_from_entry(entry: Any, where: str = "camera") -> Camera:
         )
 
 
-def reference_entry(reference: Reference) -> Entry:
-    """A known plane or line of the world."""
-    if isinstance(reference, ReferencePlane):
-        way = {"kind": "plane", "point": reference.point, "normal": reference.normal}
-    else:
-        way = {"kind": "line", "point": reference.point, "direction": reference.direction}
-    return {"name": reference.name} | {
-        k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in way.items()
-    }
-
-
-def reference_from_entry(entry: Any, where: str) -> Reference:
-    """The inverse of `reference_entry`."""
-    fields = keyed(entry, where, ("name", "kind", "point"), ("normal", "direction"))
-    kind, way = fields.text("kind"), {"plane": "normal", "line": "direction"}
-    if kind not in way:
-        raise DocumentError(f"{fields.path('kind')}: {kind!r} is neither plane nor line")
-    keyed(entry, where, ("name", "kind", "point", way[kind]), ())
-    noun = ReferencePlane if kind == "plane" else ReferenceLine
-    with named(where):
-        return noun(fields.text("name"), fields.vector("point", 3), fields.vector(way[kind], 3))
-
-
 def _distortion(fields: Fields) -> Distortion:
     if not fields.has("distortion"):
         return Distortion()
@@ -104,7 +78,5 @@ __all__ = [
     "object_from_entry",
     "pose_entry",
     "pose_from_entry",
-    "reference_entry",
-    "reference_from_entry",
     "thing_from_entry",
 ]

@@ -7,17 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from ..appearance import Appearance
 from ..arrays import Array, positive
 from ..errors import DocumentError
 from ..primitives import KINDS, Box, Picks, Primitive, Prism
 from ..sketch import Sketch
+from .appearance_entries import appearance_entry, appearance_from_fields, check_faces
 from .fields import Fields, items, keyed, shown, vector
 from .motion_entries import motion_entry, optional_motion, relation_entry, relation_from_entry
 from .pose_entries import Entry, named, pose_entry, pose_from_entry
 
 # what every object may have; a solved one may have a covariance, too
 COMMON = ("on", "relations", "known", "picks", "appearance", "motion")
+ERROR = ("covariance", "by_camera")
 
 
 def object_entry(thing: Primitive | Sketch, *, with_picks: bool = True) -> Entry:
@@ -32,13 +33,15 @@ def object_entry(thing: Primitive | Sketch, *, with_picks: bool = True) -> Entry
         entry["world_from_object"] = pose_entry(thing.world_from_object)
         if thing.covariance is not None:
             entry["covariance"] = thing.covariance.tolist()
+        if thing.by_camera is not None:
+            entry["by_camera"] = thing.by_camera.tolist()
     if thing.known:
         entry["known"] = dict(thing.known)
     # a sketch is nothing without its picks, even while there are none yet
     if with_picks and (thing.picks or isinstance(thing, Sketch)):
         entry["picks"] = {role: _plain(pixels) for role, pixels in thing.picks.items()}
     if thing.appearance is not None:
-        entry["appearance"] = {"color": thing.appearance.color.tolist()}
+        entry["appearance"] = appearance_entry(thing.appearance)
     if thing.motion.kind != "static":
         entry["motion"] = motion_entry(thing.motion)
     return entry
@@ -63,7 +66,9 @@ def thing_from_entry(entry: Any, where: str) -> Primitive | Sketch:
     if isinstance(entry, dict) and "world_from_object" not in entry:
         return _sketched(keyed(entry, where, ("name", "kind", "picks"), COMMON))
     required = ("name", "kind", "world_from_object", *_shape_keys(str(kind)))
-    return _solved(keyed(entry, where, required, (*COMMON, "covariance")))
+    thing = _solved(keyed(entry, where, required, (*COMMON, *ERROR)))
+    check_faces(thing, where)
+    return thing
 
 
 def _sketched(fields: Fields) -> Sketch:
@@ -75,11 +80,12 @@ def _solved(fields: Fields) -> Primitive:
     kind = KINDS[fields.text("kind")]
     pose = pose_from_entry(fields.raw("world_from_object"), fields.path("world_from_object"))
     shape = _shape(fields, kind)
-    more = shape["polygon"].size if "polygon" in shape else 0
+    rows = 6 + len(kind.size_names) + (shape["polygon"].size if "polygon" in shape else 0)
     with named(fields.where):
         return kind(
             world_from_object=pose,
-            covariance=_covariance(fields, 6 + len(kind.size_names) + more),
+            covariance=_matrix(fields, "covariance", rows, rows),
+            by_camera=_matrix(fields, "by_camera", rows, 6),
             **_common(fields),
             **shape,
         )
@@ -94,7 +100,7 @@ def _common(fields: Fields) -> dict[str, Any]:
         "on": fields.text("on") if fields.has("on") else None,
         "picks": _picks(fields),
         "known": _known(fields),
-        "appearance": _appearance(fields),
+        "appearance": appearance_from_fields(fields),
         "relations": tuple(
             relation_from_entry(entry, f"{where}[{i}]") for i, entry in enumerate(relations)
         ),
@@ -134,8 +140,8 @@ def _shape(fields: Fields, kind: type[Primitive]) -> dict[str, Any]:
     return shape
 
 
-def _covariance(fields: Fields, size: int) -> Array | None:
-    return fields.matrix("covariance", size, size) if fields.has("covariance") else None
+def _matrix(fields: Fields, key: str, rows: int, columns: int) -> Array | None:
+    return fields.matrix(key, rows, columns) if fields.has(key) else None
 
 
 def _known(fields: Fields) -> dict[str, float]:
@@ -148,13 +154,6 @@ def _known(fields: Fields) -> dict[str, float]:
         for name in kind.size_names
         if known.has(name)
     }
-
-
-def _appearance(fields: Fields) -> Appearance | None:
-    if not fields.has("appearance"):
-        return None
-    where = fields.path("appearance")
-    return Appearance(keyed(fields.raw("appearance"), where, ("color",), ()).vector("color", 3))
 
 
 def _picks(fields: Fields) -> Picks:

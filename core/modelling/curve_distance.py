@@ -47,12 +47,12 @@ def nearest_feet(
     curve: Curve,
     starts: Array,
     pixels: Array,
-    longest_step: float,
+    longest_step: Array | float,
 ) -> Feet:
     """The nearest points of N imaged curves to N pixels (N, 2), one each.
 
-    `starts` (N,) are parameters to descend from; no step is longer than `longest_step`. Parts of
-    the result are NaN where a curve is not imaged.
+    `starts` (N,) are parameters to descend from; no step is longer than `longest_step` (of each).
+    Parts of the result are NaN where a curve is not imaged.
     """
     feet, here = starts.copy(), BEND_STEP * np.array([[0.0], [1.0], [-1.0]])
     for _ in range(STEPS):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pixels and a reference in, points in the world out, with the derivatives and covariance of each.
+"""Pixels and a reference in, points in the world out, with the derivatives of each.
 
 Reverse mapping of the paper (section 4, eq. 16-22): a pixel is a ray, and the known plane or line
 tells how far along it the point lies. Rays are exact for every distortion model.
@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, frozen
 from ..camera import Camera
-from ..covariance import propagated
 from ..errors import InvalidValue, PickError
 from ..intrinsics import BLOCK
 from ..reference import ReferenceLine, ReferencePlane
@@ -138,21 +137,36 @@ def point_derivatives_on_line(
     return whole[:, :, :2], whole[:, :, 2:]
 
 
-def point_covariance_on_plane(
-    camera: Camera, plane: ReferencePlane, pixels: ArrayLike, pixel_sigma: float = 1.0
-) -> Array:
-    """Covariances (N, 3, 3) in m^2 of `points_on_plane`, from pick noise and the camera's pose.
+def point_derivatives_by_plane(camera: Camera, plane: ReferencePlane, pixels: ArrayLike) -> Array:
+    """How `points_on_plane` follow the plane's own motion, (N, 3, 6).
 
-    `pixel_sigma` is 1 sigma of a pick in u and v. Without `camera.covariance` only the picks count.
+    The motion is that of its covariance: rotation vector w about its point, and motion v of it. At
+    a point p of it the plane rises by `n . (v + w x (p - point))`, which the ray meets elsewhere.
     """
-    return _covariance(*point_derivatives_on_plane(camera, plane, pixels), camera, pixel_sigma)
+    p = frozen(pixels, (None, 2), "pixels")
+    points = points_on_plane(camera, plane, p)
+    _, rays = camera.rays_world(p)
+    turned = np.cross(points - plane.point, plane.normal)
+    rises = np.concatenate([turned, np.broadcast_to(plane.normal, turned.shape)], axis=1)
+    derivatives: Array = (rays / (rays @ plane.normal)[:, None])[:, :, None] * rises[:, None, :]
+    return derivatives
 
 
-def point_covariance_on_line(
-    camera: Camera, line: ReferenceLine, pixels: ArrayLike, pixel_sigma: float = 1.0
-) -> Array:
-    """Covariances (N, 3, 3) in m^2 of `points_on_line`, as for the plane."""
-    return _covariance(*point_derivatives_on_line(camera, line, pixels), camera, pixel_sigma)
+def point_derivatives_by_line(camera: Camera, line: ReferenceLine, pixels: ArrayLike) -> Array:
+    """How `points_on_line` follow the line's own motion, (N, 3, 6), as for the plane."""
+    p = frozen(pixels, (None, 2), "pixels")
+    points = points_on_line(camera, line, p)
+    origin, rays = camera.rays_world(p)
+    _, depth = _nearest(origin, rays, line)
+    k, cosine = line.direction, (rays @ line.direction)[:, None]
+    gap = points - origin - depth[:, None] * rays
+    # a point of the line is carried by v + w x (p - point), then slides along to stay the nearest
+    arms = points - line.point
+    carried = np.concatenate([-hat(arms), np.broadcast_to(np.eye(3), (len(p), 3, 3))], 2)
+    slide = ((cosine * rays - k)[:, None, :] @ carried)[:, 0]
+    slide[:, :3] -= np.cross(k, gap)
+    derivatives: Array = carried + k[:, None] * (slide / (1 - cosine**2))[:, None, :]
+    return derivatives
 
 
 def grazing_warnings(
@@ -182,13 +196,6 @@ def _nearest(origin: Array, rays: Array, line: ReferenceLine) -> tuple[Array, Ar
     squared_sine[squared_sine < 1e-14] = np.nan
     along = (cosine * (rays @ gap) - line.direction @ gap) / squared_sine
     return along, rays @ gap + along * cosine
-
-
-def _covariance(by_pixel: Array, by_twist: Array, camera: Camera, pixel_sigma: float) -> Array:
-    covariance = propagated(by_pixel, pixel_sigma**2 * np.eye(2))
-    if camera.covariance is not None:
-        covariance = covariance + propagated(by_twist, camera.covariance)
-    return covariance
 
 
 def _why_no_point(camera: Camera, plane: ReferencePlane, pixel: Array, label: str) -> str:

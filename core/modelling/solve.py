@@ -3,74 +3,239 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
 
 from ..arrays import positive
 from ..camera import Camera
-from ..cell import Cell, Reference
-from ..errors import InvalidValue, PickError
+from ..cell import Cell
+from ..errors import InvalidValue
 from ..primitives import Primitive
-from ..reference import ReferencePlane
+from ..reference import Reference
+from ..references.resolve import resolve_references
+from ..references.sources import FeatureOf
 from ..sketch import Sketch
-from .pick_fit import Modelled
-from .solve_box import solve_box
-from .solve_cylinder import solve_cylinder
-
-Solver = Callable[[Camera, Sketch, ReferencePlane, float], Modelled]
-SOLVERS: dict[str, Solver] = {"box": solve_box, "cylinder": solve_cylinder}
-
+from .candidates import Chosen, choose
+from .holding import References, holds_of, relations_of
+from .model_fit import ModelFit, fit_model
+from .modelled import Modelled, modelled
+from .pick_equations import pick_observer
 
 # wide enough for any hand and any noiseless test; beyond, squares overflow
 LEAST_SIGMA, MOST_SIGMA = 1e-9, 1e4
+# references made from objects move as these are solved together: so often they are made anew
+JOINT_ROUNDS = 3
+# what is told as 1 sigma may be three of them off, and hardly more
+MOST_PULL = 3.5
 
 
 def solve_sketch(
-    camera: Camera, sketch: Sketch, reference: Reference, pick_sigma_pixels: float = 1.0
+    camera: Camera,
+    sketch: Sketch,
+    references: Iterable[Reference] = (),
+    things: Iterable[Primitive] = (),
+    pick_sigma_pixels: float = 1.0,
 ) -> Modelled:
-    """The object of a sketch that stands on `reference`, fitted to its picks in pixels.
+    """The object of one sketch, fitted to its picks in pixels and held by its relations.
 
-    `pick_sigma_pixels` is 1 sigma of a pick in u and in v. The object's covariance joins pick noise
-    and `camera.covariance`.
+    `references` and `things` are what its `on` and relations may name. `pick_sigma_pixels` is 1
+    sigma of a pick in u and in v. The object's covariance joins pick noise, `camera.covariance` and
+    the errors of what holds it.
 
-    Raises PickError for picks that can't mean the object, naming object and pick, or a reference
-    that is not a plane; InvalidValue for an impossible pick noise; NoPose without a camera pose.
+    Raises PickError for picks that can't mean the object, naming object and pick; InvalidValue for
+    an impossible pick noise or a relation that means nothing; NotConverged for relations that
+    contradict each other; NoPose without a camera pose.
     """
+    sigma = _checked_sigma(pick_sigma_pixels)
+    named = {reference.name: reference for reference in references}
+    chosen = choose(camera, sketch, named, {thing.name: thing for thing in things}, sigma)
+    return modelled(chosen.fitted, chosen.plan, chosen.warnings)
+
+
+@dataclass(frozen=True, eq=False)
+class Modelling:
+    """A cell with its objects solved, what is told of each, and doubts that are nobody's own.
+
+    `results` are of all that was solved, in the order of the cell's objects.
+    """
+
+    cell: Cell
+    results: tuple[Modelled, ...]
+    warnings: tuple[str, ...]
+
+
+def model(cell: Cell, pick_sigma_pixels: float = 1.0, *, joint: bool = False) -> Modelling:
+    """Solve every sketch of a cell, and again every object that has picks.
+
+    Each is solved after what it stands on or is held by; references made from objects follow them.
+    `joint` then solves all of them once more as one problem: picks, relations, known sizes and the
+    errors of camera and references, so that what is known of one improves the others. The cell
+    keeps its calibrated camera: otherwise a second run would count the same picks twice.
+
+    The objects come first, in their order, then the solved sketches. Objects without picks stay
+    untouched.
+
+    Raises what `solve_sketch` raises; the cell is then as it was.
+    """
+    work = _Work.of(cell, _checked_sigma(pick_sigma_pixels))
+    while work.waiting:
+        work.solve_level()
+    return work.finished(joint)
+
+
+def model_cell(
+    cell: Cell, pick_sigma_pixels: float = 1.0, *, joint: bool = False
+) -> tuple[Cell, tuple[Modelled, ...]]:
+    """`model` for those who want the cell and the results alone."""
+    modelling = model(cell, pick_sigma_pixels, joint=joint)
+    return modelling.cell, modelling.results
+
+
+@dataclass(eq=False)
+class _Work:
+    """A cell being solved: what is done, and the sketches that wait for it."""
+
+    cell: Cell
+    sigma: float
+    order: tuple[str, ...]
+    waiting: dict[str, Sketch]
+    chosen: dict[str, Chosen] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+    @staticmethod
+    def of(cell: Cell, sigma: float) -> _Work:
+        sketches = {
+            thing.name: thing if isinstance(thing, Sketch) else Sketch.of(thing)
+            for thing in cell.things
+            if isinstance(thing, Sketch) or thing.picks
+        }
+        still = tuple(thing for thing in cell.objects if not thing.picks)
+        bare = replace(cell, objects=still, sketches=tuple(sketches.values()))
+        return _Work(bare, sigma, tuple(thing.name for thing in cell.things), sketches)
+
+    def solve_level(self) -> None:
+        """Solve all sketches whose holders stand; of a circle, one without those that wait."""
+        self.cell, _ = resolve_references(self.cell, self.sigma)
+        references = self.references()
+        ready = [sketch for sketch in self.waiting.values() if self._stands(sketch, references)]
+        ready = ready or [self._loosened(next(iter(self.waiting.values())), references)]
+        camera, things = self.cell.standing_camera(), {t.name: t for t in self.cell.objects}
+        solved = []
+        for sketch in ready:
+            chosen = choose(camera, sketch, references, things, self.sigma)
+            whole = self.waiting.pop(sketch.name)
+            thing = replace(chosen.fitted.thing, relations=whole.relations, on=whole.on)
+            self.chosen[sketch.name] = replace(chosen, fitted=replace(chosen.fitted, thing=thing))
+            solved.append(thing)
+        self.cell = replace(
+            self.cell,
+            objects=(*self.cell.objects, *solved),
+            sketches=tuple(self.waiting.values()),
+        )
+
+    def finished(self, joint: bool) -> Modelling:
+        """All objects fitted with what they share, in the order of the document."""
+        fit = self._fit(joint=False)
+        for _ in range(JOINT_ROUNDS if joint else 0):
+            self._take(fit)
+            fit = self._fit(joint=True)
+        self._take(fit)
+        objects = {thing.name: thing for thing in self.cell.objects}
+        ordered = tuple(objects[name] for name in self.order)
+        results = [
+            modelled(
+                replace(fit.objects[name], thing=objects[name]),
+                self.chosen[name].plan,
+                self.chosen[name].warnings,
+            )
+            for name in self.order
+            if name in self.chosen
+        ]
+        cell = replace(self.cell, objects=ordered, sketches=())
+        return Modelling(cell, tuple(results), (*self.warnings, *_pulled(fit)))
+
+    def references(self) -> dict[str, Reference]:
+        """What stands, by name; a face of an object is taken from the object itself."""
+        return {reference.name: reference for reference in self.cell.placed_references}
+
+    def _fit(self, *, joint: bool) -> ModelFit:
+        self.cell, self.warnings = resolve_references(self.cell, self.sigma)
+        plans = {name: chosen.plan for name, chosen in self.chosen.items()}
+        things = [_by_feature(thing, self.cell) for thing in self.cell.objects]
+        return fit_model(
+            self.cell.standing_camera(),
+            self.references(),
+            things,
+            pick_observer(plans),
+            list(plans),
+            joint=joint,
+        )
+
+    def _take(self, fit: ModelFit) -> None:
+        """The fitted objects, named as their own relations name what holds them."""
+        before = {thing.name: thing for thing in self.cell.objects}
+        for name, fitted in fit.objects.items():
+            own = before[name]
+            before[name] = replace(fitted.thing, on=own.on, relations=own.relations)
+        self.cell = replace(self.cell, objects=tuple(before.values()))
+
+    def _stands(self, sketch: Sketch, references: References) -> bool:
+        named = [t.name for t in self.cell.things]
+        pending = {r.name for r in self.cell.references} - set(references)
+        if any(path in pending for r in relations_of(sketch) for path in (r.to, r.about)):
+            return False
+        targets = [t for hold in holds_of(sketch, references, named) for t in hold.targets]
+        return not any(t.is_object and t.name in self.waiting for t in targets)
+
+    def _loosened(self, sketch: Sketch, references: References) -> Sketch:
+        """The sketch without relations to what waits for it in turn."""
+        kept = tuple(
+            relation
+            for relation in relations_of(sketch)
+            if self._stands(replace(sketch, on=None, relations=(relation,)), references)
+        )
+        return replace(sketch, on=None, relations=kept)
+
+
+def _pulled(fit: ModelFit) -> list[str]:
+    """A word when the objects want camera or references elsewhere than these say they can be."""
+    if fit.pull_sigmas <= MOST_PULL:
+        return []
+    return [
+        f"the objects together pull camera and references by {fit.pull_sigmas:.1f} of their own "
+        "sigmas: a known size, a relation or the calibration is wrong"
+    ]
+
+
+def _by_feature(thing: Primitive, cell: Cell) -> Primitive:
+    """With references that are faces or axes of objects replaced by these: they move together."""
+    feature_of = {
+        reference.name: reference.source.of
+        for reference in cell.references
+        if isinstance(reference.source, FeatureOf)
+    }
+    if not feature_of:
+        return thing
+    relations = tuple(
+        replace(
+            relation,
+            to=feature_of.get(relation.to, relation.to),
+            about=feature_of.get(relation.about or "", relation.about),
+        )
+        for relation in thing.relations
+    )
+    on = None if thing.on is None else feature_of.get(thing.on, thing.on)
+    return replace(thing, on=on, relations=relations)
+
+
+def _checked_sigma(pick_sigma_pixels: float) -> float:
     sigma = positive(pick_sigma_pixels, "pick_sigma_pixels")
     if not LEAST_SIGMA <= sigma <= MOST_SIGMA:
         raise InvalidValue(
             f"pick_sigma_pixels: {sigma:g} px is no error of a hand; "
             f"give {LEAST_SIGMA:g} to {MOST_SIGMA:g}"
         )
-    if not isinstance(reference, ReferencePlane):
-        raise PickError(
-            f"{sketch.name}: a {sketch.kind} stands on a plane, and {reference.name} is a line; "
-            "name a plane in `on`"
-        )
-    return SOLVERS[sketch.kind](camera, sketch, reference, sigma)
+    return sigma
 
 
-def model_cell(cell: Cell, pick_sigma_pixels: float = 1.0) -> tuple[Cell, tuple[Modelled, ...]]:
-    """Solve every sketch of a cell, and again every object that has picks.
-
-    Returns the cell with the objects first, in their order, then the solved sketches, and the
-    results of all that was solved in the same order. Objects without picks stay untouched.
-
-    Raises what `solve_sketch` raises; the cell is then as it was.
-    """
-    objects: list[Primitive] = []
-    results: list[Modelled] = []
-    things: tuple[Primitive | Sketch, ...] = (*cell.objects, *cell.sketches)
-    for thing in things:
-        if not isinstance(thing, Sketch) and not thing.picks:
-            objects.append(thing)
-            continue
-        sketch = thing if isinstance(thing, Sketch) else Sketch.of(thing)
-        reference = cell.reference(sketch.on or "")
-        modelled = solve_sketch(cell.standing_camera(), sketch, reference, pick_sigma_pixels)
-        objects.append(modelled.object)
-        results.append(modelled)
-    return replace(cell, objects=tuple(objects), sketches=()), tuple(results)
-
-
-__all__ = ["Modelled", "model_cell", "solve_sketch"]
+__all__: Sequence[str] = ["Modelled", "model_cell", "solve_sketch"]

@@ -11,7 +11,7 @@ from ...core.calibration.calibrate import Calibration, calibrate_cell
 from ...core.camera import Camera
 from ...core.cell import Cell
 from ...core.document.cell_file import read_cell, write_cell
-from ...core.modelling.pick_fit import Modelled
+from ...core.modelling.modelled import Modelled
 from ...core.modelling.solve import model_cell
 from ...core.picture.overlay import BallOutline, draw_overlay
 from ...core.picture.pictures import read_picture

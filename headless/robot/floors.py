@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.document.entries import reference_from_entry
+from ...core.document.reference_entries import reference_from_entry
 from ...core.pose import Pose
 from ...core.primitives import Box
 from ...core.reference import ReferencePlane

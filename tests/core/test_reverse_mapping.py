@@ -16,10 +16,12 @@ from monocell.core import (
     ReferencePlane,
 )
 from monocell.core.errors import InvalidValue, PickError
-from monocell.core.modelling.reverse_mapping import (
-    grazing_warnings,
+from monocell.core.modelling.mapped_covariance import (
     point_covariance_on_line,
     point_covariance_on_plane,
+)
+from monocell.core.modelling.reverse_mapping import (
+    grazing_warnings,
     point_derivatives_on_line,
     point_derivatives_on_plane,
     points_on_line,

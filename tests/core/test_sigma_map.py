@@ -10,8 +10,8 @@ from monocell.core import Camera, Cell, Pose, ReferenceLine, ReferencePlane, Ske
 from monocell.core.calibration.sigma_map import sigma_field, surface_sigma
 from monocell.core.calibration.work_surface import surface_of, work_area
 from monocell.core.errors import InvalidValue, NoPose
+from monocell.core.modelling.mapped_covariance import point_covariance_on_plane
 from monocell.core.modelling.reverse_mapping import (
-    point_covariance_on_plane,
     points_on_plane_or_nan,
 )
 

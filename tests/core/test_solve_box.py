@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from monocell.core import Pose, ReferencePlane, Sketch
 from monocell.core.errors import PickError
-from monocell.core.modelling.solve_box import solve_box
+from monocell.core.modelling.solve import solve_sketch
 from picked_scene import (
     FLOOR,
     LENSES,
@@ -24,6 +24,10 @@ from picked_scene import (
 )
 
 
+def solve_box(camera, sketch, plane, pick_sigma_pixels=1.0):
+    return solve_sketch(camera, sketch, [plane], (), pick_sigma_pixels)
+
+
 def sketch(picks, known=None, on="floor"):
     return Sketch("block", "box", on, picks, known or {})
 
@@ -35,7 +39,8 @@ def test_a_box_comes_back_from_its_exact_picks_on_any_plane(model, plane):
     solved = solve_box(cam, sketch(box_picks(box, cam), on=plane.name), plane)
     np.testing.assert_allclose(deviation(solved.object, box), 0, atol=1e-9)
     assert solved.rms_pixels < 1e-8
-    assert solved.warnings == ()
+    # three corners in order round the base may hold one that the box itself hides
+    assert all("hides itself" in warning for warning in solved.warnings)
 
 
 @settings(max_examples=60, deadline=None)
@@ -126,8 +131,8 @@ def test_residuals_beyond_the_stated_noise_widen_the_covariance_and_name_the_wor
     calm = solve_box(cam, sketch(picks), FLOOR, 1.0)
     picks["base"][2] = np.add(picks["base"][2], [9.0, -7.0]).tolist()
     loud = solve_box(cam, sketch(picks), FLOOR, 1.0)
-    assert calm.warnings == ()
-    assert "block: base[2]" in loud.warnings[0]
+    assert all("hides itself" in warning for warning in calm.warnings)
+    assert any("the worst is block: base[2]" in warning for warning in loud.warnings)
     assert (loud.object.size_sigma() > 1.5 * calm.object.size_sigma()).all()
 
 
@@ -153,8 +158,7 @@ def _base(i, pixel):
 LINE = camera().project([[0.0, 0.0, 0.0], [0.1, 0.1, 0.0], [0.2, 0.2, 0.0]]).tolist()
 SQUARE = camera().project([[0, 0, 0], [0.1, 0, 0], [0.1, 0.1, 0], [0, 0.1, 0]]).tolist()
 BAD_PICKS = {
-    "too few": (_picks(base=SQUARE[:2]), r"block: base holds 2 corners"),
-    "too many": (_picks(base=[*SQUARE, SQUARE[0]]), r"block: base holds 5 corners"),
+    "too many": (_picks(base=[*SQUARE, SQUARE[0]]), r"block: base\[4\] is a fifth corner"),
     "collinear": (_picks(base=LINE), r"base\[0\], base\[1\] and base\[2\] lie on one line"),
     "twice the same": (_picks(base=_base(1, _picks()["base"][0])), r"lie on one line"),
     "crossing": (_picks(base=[SQUARE[i] for i in (0, 2, 1, 3)]), r"block: the base corners cross"),
@@ -164,12 +168,12 @@ BAD_PICKS = {
         r"block: base\[1\]: expected shape \(2\), got \(1,\)",
     ),
     "no numbers": (_picks(base=_base(1, "here")), r"block: base\[1\]: expected numbers"),
-    "null in base": (_picks(base=_base(1, None)), r"block: base\[1\]: "),
+    "null in base": (_picks(base=_base(1, None)), r"do not determine size_x, size_y, its turn"),
     "no list": (_picks(base=7), r"block: base: expected a list of pixels"),
     "far outside": (_picks(base=_base(2, [2500.0, 400.0])), r"base\[2\] at \(2500\.0, 400\.0\)"),
     "unknown role": (_picks(bottom=[]), r"'bottom' is none of them"),
     "no height": (_picks(top=[None, None]), r"block: nothing tells its height"),
-    "five tops": (_picks(top=[None] * 4 + [[1.0, 2.0]]), r"top\[4\] is above no corner"),
+    "five tops": (_picks(top=[None] * 4 + [[1.0, 2.0]]), r"top\[4\] is a fifth corner"),
     "below the base": (
         _picks(top=[[_picks()["base"][0][0], _picks()["base"][0][1] + 40.0]]),
         r"block: top\[0\] at .* lies [\d.]+ mm below floor",

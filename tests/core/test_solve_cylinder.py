@@ -9,8 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from monocell.core import Pose, Sketch
 from monocell.core.errors import PickError
-from monocell.core.modelling.cylinder_equations import CylinderPicks
-from monocell.core.modelling.solve_cylinder import solve_cylinder
+from monocell.core.modelling.pick_equations import observe_picks
+from monocell.core.modelling.pick_plan import PickPlan
+from monocell.core.modelling.solid import Solid
+from monocell.core.modelling.solve import solve_sketch
 from picked_scene import (
     FLOOR,
     LENSES,
@@ -27,6 +29,22 @@ from picked_scene import (
 )
 
 BOTH_SIDES = ((1, -0.5), (-1, 0.2), (1, 0.6))
+
+
+def solve_cylinder(camera, sketch, plane, pick_sigma_pixels=1.0):
+    return solve_sketch(camera, sketch, [plane], (), pick_sigma_pixels)
+
+
+NAMES = {"rim": ("base rim",), "top": ("top rim",), "sides": ("side-", "side+")}
+
+
+def observed(picks, cam, solid):
+    """What the equations say of picks on a cylinder, role by role."""
+    pixels = np.array([pixel for role in NAMES for pixel in picks.get(role, ())])
+    on = tuple(NAMES[role] for role in NAMES for _ in picks.get(role, ()))
+    return observe_picks({"drum": PickPlan(on_curves=pixels, curves=on)}, {"drum": solid}, cam)[
+        "drum"
+    ]
 
 
 def sketch(picks, known=None, on="floor"):
@@ -125,9 +143,7 @@ def test_the_residuals_are_pixel_distances_to_the_imaged_outline(model):
     dense = np.linspace(-np.pi, np.pi, 40_001)
     circles = [cam.project(rim_points(drum, dense, level)) for level in (-1.0, 1.0)]
     picks = noisy(cylinder_picks(drum, cam), np.random.default_rng(2), 3.0)
-    equations = CylinderPicks(
-        cam.intrinsics, cam.pose, np.array(picks["rim"]), np.array(picks["top"]), np.zeros((0, 2))
-    ).equations(np.array([-0.1, 0.1, 0.1, 0.25]))
+    equations = observed(picks, cam, Solid.of(drum))
     for curve, pixels, found in (
         (circles[0], picks["rim"], equations.residuals[:4]),
         (circles[1], picks["top"], equations.residuals[4:]),
@@ -140,23 +156,19 @@ def test_the_residuals_are_pixel_distances_to_the_imaged_outline(model):
 def test_the_derivatives_of_the_residuals_match_differences(model):
     drum, cam = cylinder_on(FLOOR), camera(model)
     picks = noisy(cylinder_picks(drum, cam, sides=BOTH_SIDES), np.random.default_rng(2), 2.0)
-    arrays = [np.array(picks[role]) for role in ("rim", "top", "sides")]
-    at = np.array([-0.1, 0.1, 0.1, 0.25])
-
-    def residuals(parameters, twist=(0.0,) * 6):
-        picked = CylinderPicks(cam.intrinsics, cam.pose.perturbed(twist), *arrays)
-        return picked.equations(parameters).residuals
-
-    equations = CylinderPicks(cam.intrinsics, cam.pose, *arrays).equations(at)
-    step = 1e-5
-    for i in range(4):
-        moved = step * np.eye(4)[i]
-        difference = (residuals(at + moved) - residuals(at - moved)) / (2 * step)
-        np.testing.assert_allclose(equations.by_parameters[:, i], difference, atol=2e-3)
+    at = Solid.of(drum)
+    found, step = observed(picks, cam, at), 1e-5
+    for i in range(8):
+        moved = step * np.eye(8)[i]
+        ahead, behind = (observed(picks, cam, at.moved(s)).residuals for s in (moved, -moved))
+        np.testing.assert_allclose(found.by_object[:, i], (ahead - behind) / (2 * step), atol=3e-3)
     for i in range(6):
         twist = step * np.eye(6)[i]
-        difference = (residuals(at, twist) - residuals(at, -twist)) / (2 * step)
-        np.testing.assert_allclose(equations.by_twist[:, i], difference, atol=2e-3)
+        ahead, behind = (
+            observed(picks, camera(model, cam.pose.perturbed(t)), at).residuals
+            for t in (twist, -twist)
+        )
+        np.testing.assert_allclose(found.by_camera[:, i], (ahead - behind) / (2 * step), atol=2e-3)
 
 
 @pytest.mark.slow
@@ -213,7 +225,7 @@ BAD_PICKS = {
     "no scale": (
         {"top": GOOD["top"], "sides": GOOD["sides"]},
         {},
-        "drum: the picks do not determine x, y",
+        "drum: the picks do not determine radius, height, its place",
     ),
     "one side alone": (
         {"rim": GOOD["rim"][:1], "sides": [GOOD["sides"][0], GOOD["sides"][2]]},

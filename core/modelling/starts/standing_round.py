@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rays of a cylinder's picks in, every (x, y, radius, height) worth descending from out.
+"""The rays of a round solid that stands on a plane in, every shape of it worth a descent out.
 
-A least-squares fit needs a start near its end, and a few picks can fit two cylinders: a top pick
-may lie on the near or the far side of the top circle. All that fit are tried.
+A few picks can fit two solids: a pick of the far circle may lie on its near or its far side. All
+that fit are tried.
 """
 
 from __future__ import annotations
@@ -12,56 +12,111 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from ...arrays import Array
 
 # guesses of an unknown height, in shares of the camera's height above the plane
 HEIGHT_LADDER = (0.03, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.92)
 # guesses of the distance when nothing measures it, in camera heights
 DISTANCE_LADDER = (0.3, 0.6, 1.0, 1.6, 2.5, 4.0, 7.0)
+# guesses of one radius of a cone from the other
+TAPERS = (0.0, 0.4, 0.8, 1.3, 2.0)
 DIRECTIONS = 8
 
 
 @dataclass(frozen=True, eq=False)
-class CylinderRays:
+class StandingRays:
     """Picks as seen from `origin` (3,) in the plane's frame.
 
-    `rim` (N, 2) are points mapped onto the plane; `top` and `sides` (N, 3) unit rays.
+    `near` (N, 2) are points of the circle on the plane, mapped onto it; `far` (of the other
+    circle), `sides` and `apex` (N, 3) unit rays.
     """
 
     origin: Array
-    rim: Array
-    top: Array
+    near: Array
+    far: Array
     sides: Array
+    apex: Array
 
 
-def cylinder_starts(rays: CylinderRays, known: Mapping[str, float]) -> Iterator[Array]:
-    """Starts (x, y, radius, height) in the plane's frame, the likeliest first."""
+def cylinders_on(rays: StandingRays, known: Mapping[str, float]) -> Iterator[Array]:
+    """(x, y, radius, height) in the plane's frame; `known` may hold `radius` and `height`."""
     radius = known.get("radius")
     if "height" in known:
-        circle = np.concatenate([rays.rim, _pierce(rays, known["height"])])
+        circle = np.concatenate([rays.near, _pierce(rays, rays.far, known["height"])])
         for base in _bases(rays, circle, radius):
             yield np.array([*base, known["height"]])
         return
-    if len(rays.rim) >= 3 or len(rays.sides) >= 2:
-        for base in _bases(rays, rays.rim, radius):
+    if len(rays.near) >= 3 or len(rays.sides) >= 2:
+        for base in _bases(rays, rays.near, radius):
             for height in _heights(rays, base):
                 yield np.array([*base, height])
-    if len(rays.rim) < 3:
+    if len(rays.near) < 3:
         for height in np.array(HEIGHT_LADDER) * abs(rays.origin[2]):
-            circle = np.concatenate([rays.rim, _pierce(rays, height)])
+            circle = np.concatenate([rays.near, _pierce(rays, rays.far, height)])
             for base in _bases(rays, circle, radius):
                 yield np.array([*base, height])
 
 
-def _pierce(rays: CylinderRays, height: float) -> Array:
-    """Where the top rays pierce the level of `height`, (N, 2), those that do in front."""
+def cones_on(rays: StandingRays, known: Mapping[str, float]) -> Iterator[Array]:
+    """(x, y, near radius, far radius, height); `known` may hold `near`, `far` and `height`."""
+    for x, y, near in _near_circles(rays, known):
+        for height in _cone_heights(rays, np.array([x, y]), known):
+            far = _around_at(rays, rays.far, np.array([x, y]), height)
+            fars = [known.get("far", far)] if far is not None or "far" in known else None
+            for taper in fars if fars is not None else [t * near for t in TAPERS]:
+                yield np.array([x, y, near, taper, height])
+    if len(rays.near) < 3 and len(rays.far) >= 3:
+        for height in _cone_heights(rays, None, known):
+            circle = _circle(_pierce(rays, rays.far, height))
+            if circle is not None:
+                middle = circle[:2]
+                near = np.linalg.norm(rays.near - middle, axis=1)
+                radii = [float(np.median(near))] if len(near) else circle[2] * np.array(TAPERS[1:])
+                for radius in radii:
+                    yield np.array([*middle, known.get("near", radius), circle[2], height])
+
+
+def _near_circles(rays: StandingRays, known: Mapping[str, float]) -> Iterator[Array]:
+    if len(rays.near):
+        yield from _bases(rays, rays.near, known.get("near"))
+    if len(rays.near) < 3 and len(rays.apex):
+        # a point that stands upright over the middle, wherever its ray passes
+        for height in np.array(HEIGHT_LADDER) * abs(rays.origin[2]):
+            middle = _pierce(rays, rays.apex, height)
+            if len(middle):
+                away = np.linalg.norm(rays.near - middle[0], axis=1)
+                radius = known.get("near", float(np.median(away)) if len(away) else height / 2)
+                yield np.array([*middle[0], radius])
+
+
+def _cone_heights(
+    rays: StandingRays, middle: Array | None, known: Mapping[str, float]
+) -> list[float]:
+    if "height" in known:
+        return [known["height"]]
+    if len(rays.apex) and middle is not None:
+        ray, away = rays.apex[0], middle - rays.origin[:2]
+        flat = float(ray[:2] @ ray[:2])
+        if flat > 1e-12:
+            return [float(rays.origin[2] + ray[2] * (ray[:2] @ away) / flat)]
+    return [share * abs(float(rays.origin[2])) for share in HEIGHT_LADDER]
+
+
+def _around_at(rays: StandingRays, circle: Array, middle: Array, height: float) -> float | None:
+    """The radius of a circle at a height about a known middle."""
+    points = _pierce(rays, circle, height)
+    return float(np.median(np.linalg.norm(points - middle, axis=1))) if len(points) else None
+
+
+def _pierce(rays: StandingRays, through: Array, height: float) -> Array:
+    """Where rays pierce the level of `height`, (N, 2), those that do in front."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        depth = (height - rays.origin[2]) / rays.top[:, 2]
+        depth = (height - rays.origin[2]) / through[:, 2]
     met = (depth > 0) & np.isfinite(depth)
-    return rays.origin[:2] + depth[met, None] * rays.top[met, :2]
+    return rays.origin[:2] + depth[met, None] * through[met, :2]
 
 
-def _bases(rays: CylinderRays, circle: Array, radius: float | None) -> Iterator[Array]:
+def _bases(rays: StandingRays, circle: Array, radius: float | None) -> Iterator[Array]:
     """Base circles (x, y, radius) from points on one circle and from the two sides."""
     wedge = _wedge(rays, circle)
     if len(circle) >= 3:
@@ -76,7 +131,7 @@ def _bases(rays: CylinderRays, circle: Array, radius: float | None) -> Iterator[
         yield from _around(circle, radius, rays.origin)
 
 
-def _wedge(rays: CylinderRays, circle: Array) -> tuple[Array, float] | None:
+def _wedge(rays: StandingRays, circle: Array) -> tuple[Array, float] | None:
     """The direction (2,) half way between the two sides, and the sine of half their angle."""
     flat = rays.sides[:, :2]
     flat = flat[np.linalg.norm(flat, axis=1) > 1e-9]
@@ -95,7 +150,7 @@ def _wedge(rays: CylinderRays, circle: Array) -> tuple[Array, float] | None:
 
 
 def _distances(
-    rays: CylinderRays, circle: Array, azimuth: Array, sine: float, radius: float | None
+    rays: StandingRays, circle: Array, azimuth: Array, sine: float, radius: float | None
 ) -> list[float]:
     """Distances of an axis whose cylinder touches both sides of the wedge: radius = distance sine.
 
@@ -114,6 +169,8 @@ def _distances(
 
 def _circle(points: Array) -> Array | None:
     """(x, y, radius) of the circle nearest to points (N, 2) (Kasa 1976); None for a line."""
+    if len(points) < 3:
+        return None
     centre = points.mean(axis=0)
     q = points - centre
     scale = float(np.sqrt((q * q).sum(1).mean()))
@@ -140,12 +197,12 @@ def _around(circle: Array, radius: float | None, origin: Array) -> Iterator[Arra
             yield np.array([*(middle + offset * np.array([np.cos(angle), np.sin(angle)])), size])
 
 
-def _heights(rays: CylinderRays, base: Array) -> list[float]:
-    """The heights at which the top rays enter and leave the endless cylinder over the base."""
-    o, d = rays.origin[:2] - base[:2], rays.top[:, :2]
+def _heights(rays: StandingRays, base: Array) -> list[float]:
+    """The heights at which the far rays enter and leave the endless cylinder over the base."""
+    o, d = rays.origin[:2] - base[:2], rays.far[:, :2]
     a = np.maximum((d * d).sum(1), 1e-18)
     b, c = d @ o, float(o @ o) - base[2] ** 2
     # a ray that passes the cylinder by counts where it is nearest
     root = np.sqrt(np.maximum(b * b - a * c, 0.0))
-    levels = [rays.origin[2] + rays.top[:, 2] * (-b + sign * root) / a for sign in (-1.0, 1.0)]
-    return [float(np.median(level)) for level in levels]
+    levels = [rays.origin[2] + rays.far[:, 2] * (-b + sign * root) / a for sign in (-1.0, 1.0)]
+    return [float(np.median(level)) for level in levels] if len(rays.far) else []

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One sketch in, the fitted object that its picks mean out, with the rivals that fit as well."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..camera import Camera
+from ..errors import NotConverged, PickError
+from ..primitives import Primitive
+from ..sketch import Sketch
+from .holding import References
+from .model_fit import FittedObject, fit_model
+from .pick_equations import pick_observer
+from .pick_plan import PickPlan
+from .pick_visibility import hidden_picks, hidden_warnings
+from .starts.start import start
+
+# two fits whose chi squared differs by less than this are within the noise of each other
+WITHIN_NOISE = 4.0
+# fits that agree to this share of their sizes are one and the same
+SAME_SHARE = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Chosen:
+    """The object that fits best, the plan of its picks, and what is doubtful already."""
+
+    fitted: FittedObject
+    plan: PickPlan
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Candidate:
+    fitted: FittedObject
+    chi_squared: float
+    hidden: tuple[int, ...]
+
+
+def choose(
+    camera: Camera,
+    sketch: Sketch,
+    references: References,
+    things: Mapping[str, Primitive],
+    pick_sigma_pixels: float,
+) -> Chosen:
+    """Fit every start of a sketch, held by what stands already, and choose.
+
+    Of those within the noise of the best, the one is taken that hides the fewest of its own picks;
+    the next is named as a rival. Raises PickError naming object and pick, and what `fit_model`
+    raises.
+    """
+    starts = start(camera, sketch, references, things, pick_sigma_pixels)
+    found, refusals = [], []
+    for thing in starts.things:
+        try:
+            found.append(_fitted(camera, thing, starts.plan, references, things))
+        except (PickError, NotConverged) as error:
+            refusals.append(error)
+    if not found:
+        raise refusals[0]
+    found.sort(key=lambda c: c.chi_squared)
+    scale = found[0].fitted.noise_scale
+    good = [c for c in found if c.chi_squared <= found[0].chi_squared + WITHIN_NOISE * scale**2]
+    # between perfect fits the larger is taken: its top picks are on the side facing the camera
+    good.sort(key=lambda c: (len(c.hidden), round(c.chi_squared, 6), -_volume(c)))
+    best = good[0]
+    rivals = [c for c in good[1:] if len(c.hidden) == len(best.hidden) and not _same(c, best)]
+    thing = best.fitted.thing
+    fitted = replace(best.fitted, thing=replace(thing, known=sketch.known))
+    hidden = hidden_warnings(thing, camera, starts.plan)
+    doubts = (*starts.warnings, *_rival_doubts(best, rivals), *hidden)
+    return Chosen(fitted, starts.plan, doubts)
+
+
+def _fitted(
+    camera: Camera,
+    thing: Primitive,
+    plan: PickPlan,
+    references: References,
+    things: Mapping[str, Primitive],
+) -> _Candidate:
+    others = [other for name, other in things.items() if name != thing.name]
+    fit = fit_model(
+        camera, references, [*others, thing], pick_observer({thing.name: plan}), [thing.name]
+    )
+    fitted = fit.objects[thing.name]
+    return _Candidate(fitted, fit.chi_squared, hidden_picks(fitted.thing, camera, plan))
+
+
+def _volume(one: _Candidate) -> float:
+    return float(np.prod(2 * one.fitted.thing.half_extent))
+
+
+def _same(one: _Candidate, other: _Candidate) -> bool:
+    a, b = one.fitted.thing, other.fitted.thing
+    size = float(np.abs(b.sizes).max())
+    apart = np.abs(a.sizes - b.sizes).max()
+    moved = np.abs(a.world_from_object.translation - b.world_from_object.translation).max()
+    return bool(max(apart, moved) <= SAME_SHARE * size)
+
+
+def _rival_doubts(best: _Candidate, rivals: list[_Candidate]) -> list[str]:
+    if not rivals:
+        return []
+    thing, other = best.fitted.thing, rivals[0].fitted.thing
+    return [
+        f"{thing.name}: the picks fit two {thing.kind}s: {_sizes(thing)} (taken) and "
+        f"{_sizes(other)}; add a pick to tell them apart"
+    ]
+
+
+def _sizes(thing: Primitive) -> str:
+    told = [
+        f"{name} {1e3 * size:.1f}" for name, size in zip(thing.size_names, thing.sizes, strict=True)
+    ]
+    return ", ".join(told) + " mm"
