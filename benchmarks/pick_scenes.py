@@ -52,9 +52,7 @@ class Task:
         }
         sizes = dict(zip(self.truth.size_names, map(float, self.truth.sizes), strict=True))
         known = {name: sizes[name] for name in self.known}
-        return Sketch(
-            "it", self.truth.kind, self.on, picks, known, relations=self.relations
-        )
+        return Sketch("it", self.truth.kind, self.on, picks, known, relations=self.relations)
 
     def scene_truth(self) -> Primitive:
         """The truth as a fit may start from it."""
@@ -67,12 +65,12 @@ def random_camera(rng: np.random.Generator) -> Camera:
     """A camera 1.5 to 3 m away, 20 to 55 degrees above the floor, rolled a little."""
     away, turn = rng.uniform(1.5, 3.0), rng.uniform(-1.9, -1.2)
     rise = np.radians(rng.uniform(20, 55))
-    eye = away * np.array(
-        [np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)]
-    )
+    eye = away * np.array([np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)])
     up = np.array([rng.normal(0, 0.05), rng.normal(0, 0.05), 1.0])
     pose = Pose.looking_at(eye, rng.uniform(-0.05, 0.05, 3) + [0, 0, 0.1], up)
-    return Camera(Intrinsics(1280, 960, 1000.0 * away / 2, 995.0 * away / 2, 650.3, 470.8, LENS), pose)
+    return Camera(
+        Intrinsics(1280, 960, 1000.0 * away / 2, 995.0 * away / 2, 650.3, 470.8, LENS), pose
+    )
 
 
 def standing(
@@ -105,9 +103,7 @@ def corner_pixels(
     return found
 
 
-def _hidden(
-    truth: Primitive, camera: Camera, names: Sequence[str], pixels: np.ndarray
-) -> set[int]:
+def _hidden(truth: Primitive, camera: Camera, names: Sequence[str], pixels: np.ndarray) -> set[int]:
     plan = PickPlan(pixels, tuple(names), labels=tuple(names))
     return set(hidden_picks(truth, camera, plan))
 
@@ -168,9 +164,7 @@ def box_picks(truth: Primitive, camera: Camera, base: Sequence[int], top: Sequen
     """Those of the wanted corners, by their places round the base, that show; null for others."""
     wanted = [f"{CORNERS[i]}base" for i in base] + [f"{CORNERS[i]}top" for i in top]
     found = corner_pixels(truth, camera, wanted)
-    return {
-        role: [found.get(f"{CORNERS[i]}{role}") for i in range(4)] for role in ("base", "top")
-    }
+    return {role: [found.get(f"{CORNERS[i]}{role}") for i in range(4)] for role in ("base", "top")}
 
 
 def prism_picks(truth: Primitive, camera: Camera) -> dict:

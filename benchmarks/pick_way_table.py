@@ -227,22 +227,35 @@ WAYS = (
     Way("box: on a ramp, all that show", lambda r: _box(r, RAMP, ALL, ALL, 6)),
     Way("box: a face on a wall", _leaning_box),
     Way("box: floating, one size known", lambda r: _free_box(r, ("size_z",), 6)),
-    Way("box: floating, all sizes known", lambda r: _free_box(r, ("size_x", "size_y", "size_z"), 6)),
+    Way(
+        "box: floating, all sizes known", lambda r: _free_box(r, ("size_x", "size_y", "size_z"), 6)
+    ),
     Way("cylinder: three of rim, three of top", lambda r: _cylinder(r, rim=3, top=3)),
-    Way("cylinder: two sides, one of rim, two of top", lambda r: _cylinder(r, rim=1, top=2, sides=2)),
+    Way(
+        "cylinder: two sides, one of rim, two of top", lambda r: _cylinder(r, rim=1, top=2, sides=2)
+    ),
     Way("cylinder: five of rim, five of top, sides", lambda r: _cylinder(r, rim=5, top=5, sides=4)),
     Way("cylinder: on a ramp", lambda r: _cylinder(r, plane=RAMP, rim=3, top=3, sides=2)),
-    Way("cylinder: known height, rim and sides", lambda r: _cylinder(r, ("height",), rim=2, sides=2)),
+    Way(
+        "cylinder: known height, rim and sides", lambda r: _cylinder(r, ("height",), rim=2, sides=2)
+    ),
     Way("cylinder: lying, both ends and sides", lambda r: _lying(r, rim=4, top=3, sides=2)),
     Way("cylinder: lying, both ends", lambda r: _lying(r, rim=4, top=3)),
     Way("cylinder: the shoulder on a trunk", _shoulder),
     Way("cylinder: on the side of a crate", _on_a_face),
     Way("cylinder: floating, known radius", _free_round),
     Way("cone: frustum by its rims", lambda r: _cone(r, pointed=False, rim=3, top=3)),
-    Way("cone: frustum by sides and rims", lambda r: _cone(r, pointed=False, rim=2, top=4, sides=2)),
+    Way(
+        "cone: frustum by sides and rims", lambda r: _cone(r, pointed=False, rim=2, top=4, sides=2)
+    ),
     Way("cone: pointed, rim and apex", lambda r: _cone(r, pointed=True, rim=3, apex=1)),
-    Way("cone: pointed, rim, sides and apex", lambda r: _cone(r, pointed=True, rim=2, sides=2, apex=1)),
-    Way("cone: lying frustum", lambda r: _cone(r, pointed=False, lying=True, rim=4, top=4, sides=2)),
+    Way(
+        "cone: pointed, rim, sides and apex",
+        lambda r: _cone(r, pointed=True, rim=2, sides=2, apex=1),
+    ),
+    Way(
+        "cone: lying frustum", lambda r: _cone(r, pointed=False, lying=True, rim=4, top=4, sides=2)
+    ),
     Way("tube: rim, top and hole", lambda r: _tube(r, rim=3, top=3, hole=3)),
     Way("tube: lying", lambda r: _tube(r, lying=True, rim=4, top=3, sides=2, hole=3)),
     Way("sphere: floating, known radius", lambda r: _ball(r, "", ("radius",))),

@@ -27,7 +27,7 @@ from pick_way_table import WAYS, Way
 
 # fits within this much chi squared of the best fit as well
 ALIKE = 4.0
-SHOWN=True
+SHOWN = True
 SAME_SHARE = 1e-3
 
 
@@ -60,7 +60,17 @@ def main() -> None:
                 for i, o in enumerate(outcomes):
                     if o.verdict != "right":
                         print(f"  {i}: {o.verdict} {o.told}")
-    heads = ("way", "right %", "other %", "wrong %", "size %", "covered %", "starts", "ms", "95 % ms")
+    heads = (
+        "way",
+        "right %",
+        "other %",
+        "wrong %",
+        "size %",
+        "covered %",
+        "starts",
+        "ms",
+        "95 % ms",
+    )
     print(table(heads, rows))
 
 
@@ -150,7 +160,9 @@ def _fitted(task: Task, starts: Starts) -> ModelFit | None:
 def _fit(task: Task, thing: Primitive, starts: Starts) -> ModelFit | None:
     things = [*task.things.values(), _named(thing)]
     try:
-        return fit_model(task.camera, REFERENCES, things, pick_observer({"it": starts.plan}), ["it"])
+        return fit_model(
+            task.camera, REFERENCES, things, pick_observer({"it": starts.plan}), ["it"]
+        )
     except MonocellError as error:
         if SHOWN:
             print("   ", error)

@@ -22,10 +22,11 @@ from ..core.closing import Closing
 from ..core.mesh_part import MeshPart
 from ..core.pose import Pose
 from ..core.primitives import Primitive
+from ..core.shape.tessellation import Tessellation, box, cylinder, sphere, tessellated
 from .arm_meshes import import_mesh
 from .gripper import Block, grip_frame, gripper_blocks
 from .materials import PLAIN, surface
-from .meshes import Shape, box, cylinder, fill_mesh, shape_of, sphere
+from .meshes import fill_mesh
 from .panel import STUB_RADIUS, build_panel, remove_print, stub_centre
 from .rendering import render_linear, render_picture, render_window
 from .room import build_room
@@ -33,6 +34,8 @@ from .textures import is_textured, painted_mesh
 from .transforms import matrix_of
 from .work_cell import Ball, Panel, WorkCell
 
+# the outline is within 0.01 px of a true sphere's up to a radius of 460 px in the picture
+BALL_SEGMENTS = 512
 SAMPLES = 4
 BOUNCES = 1
 
@@ -126,7 +129,7 @@ class Stage(Closing):
         else:
             color = PLAIN if thing.appearance is None else tuple(thing.appearance.color)
             material = surface(thing.name, color, roughness=0.38)
-            ob = self._add(thing.name, shape_of(thing), material)
+            ob = self._add(thing.name, tessellated(thing), material)
         ob.matrix_world = matrix_of(thing.world_from_object)
 
     def _show_ball(self, ball: Ball | None) -> None:
@@ -154,7 +157,7 @@ class Stage(Closing):
 
     def _add_ball(self, ball: Ball) -> None:
         material = surface("ball", ball.color.tolist(), roughness=ball.roughness)
-        self._ball = self._add("ball", sphere(ball.radius), material)
+        self._ball = self._add("ball", sphere(ball.radius, BALL_SEGMENTS), material)
         self._ball["radius"] = ball.radius
 
     def _add_block(self, block: Block) -> Any:
@@ -166,7 +169,7 @@ class Stage(Closing):
         )
         return self._add(block.name, shape, material)
 
-    def _add(self, name: str, shape: Shape, material: Any) -> Any:
+    def _add(self, name: str, shape: Tessellation, material: Any) -> Any:
         mesh = bpy.data.meshes.new(name)
         fill_mesh(mesh, shape)
         mesh.materials.append(material)

@@ -12,11 +12,11 @@ from ..camera import Camera
 from ..errors import NotConverged, PickError
 from ..primitives import Primitive
 from ..sketch import Sketch
-from .hidden_picks import hidden_picks
 from .holding import References
 from .model_fit import FittedObject, fit_model
 from .pick_equations import pick_observer
 from .pick_plan import PickPlan
+from .pick_visibility import hidden_picks, hidden_warnings
 from .starts.start import start
 
 # two fits whose chi squared differs by less than this are within the noise of each other
@@ -66,12 +66,14 @@ def choose(
     found.sort(key=lambda c: c.chi_squared)
     scale = found[0].fitted.noise_scale
     good = [c for c in found if c.chi_squared <= found[0].chi_squared + WITHIN_NOISE * scale**2]
-    good.sort(key=lambda c: len(c.hidden))
+    # between perfect fits the larger is taken: its top picks are on the side facing the camera
+    good.sort(key=lambda c: (len(c.hidden), round(c.chi_squared, 6), -_volume(c)))
     best = good[0]
     rivals = [c for c in good[1:] if len(c.hidden) == len(best.hidden) and not _same(c, best)]
     thing = best.fitted.thing
     fitted = replace(best.fitted, thing=replace(thing, known=sketch.known))
-    doubts = (*starts.warnings, *_rival_doubts(best, rivals), *_hidden_doubts(best, starts.plan))
+    hidden = hidden_warnings(thing, camera, starts.plan)
+    doubts = (*starts.warnings, *_rival_doubts(best, rivals), *hidden)
     return Chosen(fitted, starts.plan, doubts)
 
 
@@ -87,7 +89,11 @@ def _fitted(
         camera, references, [*others, thing], pick_observer({thing.name: plan}), [thing.name]
     )
     fitted = fit.objects[thing.name]
-    return _Candidate(fitted, fit.chi_squared, hidden_picks(fitted.thing, plan, camera))
+    return _Candidate(fitted, fit.chi_squared, hidden_picks(fitted.thing, camera, plan))
+
+
+def _volume(one: _Candidate) -> float:
+    return float(np.prod(2 * one.fitted.thing.half_extent))
 
 
 def _same(one: _Candidate, other: _Candidate) -> bool:
@@ -106,14 +112,6 @@ def _rival_doubts(best: _Candidate, rivals: list[_Candidate]) -> list[str]:
         f"{thing.name}: the picks fit two {thing.kind}s: {_sizes(thing)} (taken) and "
         f"{_sizes(other)}; add a pick to tell them apart"
     ]
-
-
-def _hidden_doubts(best: _Candidate, plan: PickPlan) -> list[str]:
-    if not best.hidden:
-        return []
-    labels = ", ".join(plan.labels[i] for i in best.hidden)
-    name = best.fitted.thing.name
-    return [f"{labels}: lies where {name} itself hides it from the camera; was another edge meant?"]
 
 
 def _sizes(thing: Primitive) -> str:

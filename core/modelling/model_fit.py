@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..camera import Camera
+from ..covariance import propagated
 from ..errors import NotConverged, PickError
 from ..primitives import Primitive
 from .fit_uncertainty import (
@@ -56,11 +57,15 @@ class FittedObject:
 
 @dataclass(frozen=True, eq=False)
 class ModelFit:
-    """All solved objects by name, the camera (moved only by a joint fit), and the fits' cost."""
+    """All solved objects by name, the camera (moved only by a joint fit), and the fits' cost.
+
+    `pull_sigmas` is how far a joint fit moves camera and references at most, in their own sigmas.
+    """
 
     objects: Mapping[str, FittedObject]
     camera: Camera
     chi_squared: float
+    pull_sigmas: float = 0.0
 
 
 def fit_model(
@@ -162,7 +167,8 @@ class _Fitting:
             camera = replace(
                 camera, covariance=spread[CAMERA] @ noise_covariance @ spread[CAMERA].T
             )
-        return ModelFit({name: done[name] for name in self.wanted}, camera, fitted.cost)
+        pull = float(np.abs(fitted.scene.noise).max(initial=0.0))
+        return ModelFit({name: done[name] for name in self.wanted}, camera, fitted.cost, pull)
 
     def _solved(
         self,
@@ -183,7 +189,7 @@ class _Fitting:
         done = {}
         for name, columns in columns_of(group, scene.things):
             own, by_noise = spreads.own[columns] * scale, spreads.by_noise[columns]
-            whole: Array = own @ own.T + by_noise @ shared @ by_noise.T
+            whole = propagated(own, np.eye(own.shape[1])) + propagated(by_noise, shared)
             thing = scene.solids[name].applied(scene.things[name])
             by_camera = by_camera_of(by_noise, layout, self.camera)
             thing = replace(thing, covariance=without_dust(whole), by_camera=by_camera)

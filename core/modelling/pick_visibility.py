@@ -73,10 +73,14 @@ def _faces_at(thing: Primitive, anchor: str) -> Sequence[tuple[Array, Array]]:
             ]
         )
         corner = signs * thing.half_extent
-        return [(corner, signs[i] * np.eye(3)[i]) for i in range(3)] if "centre" not in anchor else []
+        return (
+            [(corner, signs[i] * np.eye(3)[i]) for i in range(3)] if "centre" not in anchor else []
+        )
     if thing.kind != "prism" or "centre" in anchor:
         return []
-    end, i = (anchor[:4], int(anchor[4:])) if anchor.startswith("base") else ("top", int(anchor[3:]))
+    end, i = (
+        (anchor[:4], int(anchor[4:])) if anchor.startswith("base") else ("top", int(anchor[3:]))
+    )
     polygon = thing.parameters[1:].reshape(-1, 2)
     level = (1.0 if end == "top" else -1.0) * thing.parameters[0] / 2
     corner = np.array([*polygon[i], level])

@@ -29,8 +29,10 @@ from .sources import PickedPoints, Upright
 
 # closer than this, two picks are one
 LEAST_PIXELS = 2.0
-# sine of the angle below which three picks count as one line (6 degrees), as for a box's corners
-COLLINEAR = 0.1
+# an edge-on pick weighs as much as one that moves across by this share of the most
+LEAST_SHARE = 1e-3
+# width to length of points that count as one line; what noise makes of a wider strip is told
+COLLINEAR = 0.01
 
 
 def through_picks(task: Task, source: PickedPoints) -> Placed:
@@ -122,27 +124,33 @@ def _points(task: Task, pixels: Array, heights: Array, above: str, fewest: int) 
     labels = tuple(f"{task.name}: pixels[{i}]" for i in range(len(pixels)))
     _refuse_outside(pixels, camera, labels)
     _refuse_twins(pixels, labels)
-    points, by_pixel, by_twist, by_ground = [], [], [], []
+    points, by_pixel = np.empty((len(pixels), 3)), np.empty((len(pixels), 3, 2))
+    by_twist, by_ground = np.empty((len(pixels), 3, 6)), np.empty((len(pixels), 3, 6))
     warnings: tuple[str, ...] = ()
-    for pixel, height, label in zip(pixels, heights, labels, strict=True):
-        level = raised(ground, float(height))
-        name = above if height == 0 else f"{above} raised by {height:g} m"
-        plane, at = ReferencePlane(name, level.point, level.direction), pixel[None]
-        points.append(points_on_plane(camera, plane, at, [label])[0])
-        pixelwise, twistwise = point_derivatives_on_plane(camera, plane, at)
-        by_pixel.append(pixelwise[0])
-        by_twist.append(twistwise[0])
-        lift = np.eye(6)
-        lift[3:, :3] = -hat(float(height) * ground.direction)
-        by_ground.append(point_derivatives_by_plane(camera, plane, at)[0] @ lift)
-        warnings += grazing_warnings(camera, plane, at, [label])
+    for height in np.unique(heights):
+        rows = np.flatnonzero(heights == height)
+        at, names = pixels[rows], [labels[i] for i in rows]
+        plane, lift = _raised_to(float(height), above, ground)
+        points[rows] = points_on_plane(camera, plane, at, names)
+        by_pixel[rows], by_twist[rows] = point_derivatives_on_plane(camera, plane, at)
+        by_ground[rows] = point_derivatives_by_plane(camera, plane, at) @ lift
+        warnings += grazing_warnings(camera, plane, at, names)
     noise = task.pick_sigma_pixels**2 * np.eye(2 * len(pixels))
     influences = (
-        of_cause(_cause_of(task), blocks(np.array(by_pixel)), noise)
-        + of_camera(np.concatenate(by_twist), camera)
-        + ground.influences.through(np.concatenate(by_ground))
+        of_cause(_cause_of(task), blocks(by_pixel), noise)
+        + of_camera(by_twist.reshape(-1, 6), camera)
+        + ground.influences.through(by_ground.reshape(-1, 6))
     )
-    return _PickedInWorld(np.array(points), np.array(by_pixel), influences, labels, warnings)
+    return _PickedInWorld(points, by_pixel, influences, labels, warnings)
+
+
+def _raised_to(height: float, above: str, ground: Placed) -> tuple[ReferencePlane, Array]:
+    """The plane at a height, and how it moves with the one below, (6, 6)."""
+    level = raised(ground, height)
+    lift = np.eye(6)
+    lift[3:, :3] = -hat(height * ground.direction)
+    name = above if height == 0 else f"{above} raised by {height:g} m"
+    return ReferencePlane(name, level.point, level.direction), lift
 
 
 def _settled(
@@ -160,7 +168,10 @@ def _settled(
 def _across(picked: _PickedInWorld, normal: Array) -> Array:
     """Metres across the plane for each pixel of a pick, (N,); an edge-on pick tells no more."""
     metres = np.linalg.norm(normal @ picked.by_pixel, axis=1)
-    return np.maximum(metres, 1e-3 * metres.max())
+    # picks of one height lie in their plane wherever they are made
+    if metres.max() < LEAST_SHARE * np.linalg.norm(picked.by_pixel, axis=(1, 2)).max():
+        return np.ones(len(metres))
+    return np.maximum(metres, LEAST_SHARE * metres.max())
 
 
 def _error(

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from ..cell import Cell
@@ -24,11 +25,14 @@ def objects_behind(cell: Cell, name: str, *, unsolved: bool = False) -> tuple[st
     return tuple(trace.objects)
 
 
-def in_order(cell: Cell) -> list[str]:
-    """The names of all references, each after those that it is made from."""
+def in_order(cell: Cell, wanted: Iterable[str]) -> list[str]:
+    """The names of those references and all that they are made from, each after what it needs.
+
+    `wanted` may also name features of objects. Raises what `objects_behind` raises.
+    """
     trace = _Trace(cell, unsolved=False)
-    for reference in cell.references:
-        trace.follow(reference.name, ())
+    for name in wanted:
+        trace.follow(name, ())
     named = {reference.name for reference in cell.references}
     return [name for name in trace.done if name in named]
 
@@ -71,7 +75,10 @@ class _Trace:
         if self.unsolved and isinstance(owner, Primitive):
             return ()
         self.objects[owner.name] = None
-        return () if owner.on is None else (owner.on,)
+        # objects may hold each other both ways, but none may hold itself through a reference
+        named = {reference.name for reference in self.cell.references}
+        held = [name for r in owner.relations for name in (r.to, r.about) if name in named]
+        return (*(() if owner.on is None else (owner.on,)), *(name for name in held if name))
 
     def _nothing_called(self, name: str, trail: tuple[str, ...]) -> str:
         user = f"{trail[-1]}: " if trail else ""

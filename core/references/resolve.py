@@ -10,14 +10,14 @@ from typing import Any
 from ..arrays import Array, positive
 from ..camera import Camera
 from ..cell import Cell
-from ..primitive import Primitive
+from ..errors import InvalidValue
 from ..reference import PendingReference, Reference, ReferencePlane, kind_of
 from ..shape.features import FeatureKind
 from .from_others import along_direction, facing_camera, feature_of, intersection, parallel
 from .from_picks import through_picks, upright
 from .from_points import through_points
 from .order import in_order, objects_behind
-from .placed import Placed, Task, as_reference, placed_as_given, placed_feature
+from .placed import Lookup, Placed, Task, as_reference, placed_as_given, placed_feature
 from .sources import Stated
 
 PLACING: Mapping[str, Any] = {
@@ -59,10 +59,34 @@ def resolve_references(cell: Cell, pick_sigma_pixels: float = 1.0) -> tuple[Cell
     return resolution.cell, resolution.warnings
 
 
+def resolved_reference(
+    cell: Cell, name: str, pick_sigma_pixels: float = 1.0
+) -> tuple[Reference, tuple[str, ...]]:
+    """One reference, or face, edge or axis of an object, worked out anew, and the warnings.
+
+    Only what it is made from is looked at. Raises as `resolve_references` does, and InvalidValue
+    for a reference of an object that is only picked yet.
+    """
+    walk = _Walk(cell, positive(pick_sigma_pixels, "pick_sigma_pixels"))
+    order = in_order(cell, [name])
+    unsolved = objects_behind(cell, name, unsolved=True)
+    if unsolved:
+        raise InvalidValue(
+            f"{name}: is made from {', '.join(unsolved)}, picked and not solved yet; "
+            "model the cell first"
+        )
+    placed = [walk.place(one) for one in order]
+    warnings = tuple(warning for one in placed for warning in one.warnings)
+    reference = next((r for r in cell.references if r.name == name), None)
+    if reference is None:
+        return cell.reference(name), warnings
+    return _in_place(reference, walk.place(name)), warnings
+
+
 def resolved(cell: Cell, pick_sigma_pixels: float = 1.0) -> Resolution:
     """`resolve_references` with all that it found."""
     walk = _Walk(cell, positive(pick_sigma_pixels, "pick_sigma_pixels"))
-    order = in_order(cell)
+    order = in_order(cell, [reference.name for reference in cell.references])
     waiting = tuple(name for name in order if objects_behind(cell, name, unsolved=True))
     placed = {name: walk.place(name) for name in order if name not in waiting}
     references = [
@@ -87,30 +111,38 @@ class _Walk:
     pick_sigma_pixels: float
     done: dict[str, Placed] = field(default_factory=dict)
 
-    def place(self, name: str) -> Placed:
+    def place(self, name: str, user: str = "") -> Placed:
+        """The place of a reference or feature, for the reference `user`."""
         if name not in self.done:
-            self.done[name] = self._placed(name)
+            self.done[name] = self._placed(name, user)
         return self.done[name]
 
     def camera(self) -> Camera:
         return self.cell.standing_camera()
 
-    def _placed(self, name: str) -> Placed:
+    def _placed(self, name: str, user: str) -> Placed:
         reference = next((r for r in self.cell.references if r.name == name), None)
         if reference is None:
-            owner, _, feature_name = name.rpartition(".")
-            return placed_feature(self._object(owner), feature_name, self.cell.camera)
+            return self._feature(name, user)
         source = reference.source
         if source is None or isinstance(source, Stated):
             assert not isinstance(reference, PendingReference)
             return placed_as_given(reference)
         kind: FeatureKind = "plane" if kind_of(reference) == "plane" else "line"
         stated = reference.normal if isinstance(reference, ReferencePlane) else None
-        task = Task(name, kind, stated, self.place, self.camera, self.pick_sigma_pixels)
+        task = Task(name, kind, stated, self._placer(name), self.camera, self.pick_sigma_pixels)
         return PLACING[source.way](task, source)
 
-    def _object(self, name: str) -> Primitive:
-        return next(thing for thing in self.cell.objects if thing.name == name)
+    def _placer(self, user: str) -> Lookup:
+        return lambda name: self.place(name, user)
+
+    def _feature(self, path: str, user: str) -> Placed:
+        owner, _, name = path.rpartition(".")
+        thing = next(thing for thing in self.cell.objects if thing.name == owner)
+        try:
+            return placed_feature(thing, name, self.cell.camera)
+        except InvalidValue as error:
+            raise InvalidValue(f"{user}: {error}" if user else str(error)) from None
 
 
 def _pending(reference: Reference | PendingReference) -> PendingReference:
