@@ -29,13 +29,15 @@ def unregister():
 
 
 def _classes():
-    from . import lists, operators, panel_camera, panel_model, panel_picture, panel_use
+    from . import drops, lists, operators, panel_camera, panel_model, panel_picture, panel_use
 
     return (
         *operators.classes(),
+        *drops.CLASSES,
         *lists.CLASSES,
         panel_picture.PicturePanel,
         panel_camera.CameraPanel,
+        panel_camera.SightingsPanel,
         panel_model.ModelPanel,
         panel_use.UsePanel,
     )

@@ -62,6 +62,18 @@ def show_picture(scene: Any, name: str, picture: Any) -> None:
     scene.monocell_cell.shown_picture = name
 
 
+def show_named_picture(scene: Any, name: str) -> None:
+    """Show a picture of the cell behind the view, if it is not there already.
+
+    Raises PictureError.
+    """
+    from ..core.picture.pictures import read_picture
+
+    if scene.monocell_cell.shown_picture != name:
+        cell = bare_cell(scene)
+        show_picture(scene, name, read_picture(cell.path_of(name), cell.camera.intrinsics))
+
+
 def put_camera(scene: Any) -> None:
     """Give Blender's camera the lens and place of the document's; it is locked against slips."""
     from ..scene.blender_camera import place_camera

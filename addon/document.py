@@ -19,6 +19,7 @@ from ..core.cell import Cell
 from ..core.document.cell_file import cell_from_document, document_from_cell
 from ..core.document.json_text import dumped
 from ..core.reference import PendingReference, ReferencePlane, kind_of
+from ..core.sighting import SphereSighting
 from .report import Report, dump_report, parse_report
 
 FLOOR = ReferencePlane("floor", [0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
@@ -91,16 +92,13 @@ def _fill_sightings(stored: Any, cell: Cell, report: Report | None) -> None:
     stored.sightings.clear()
     for i, sighting in enumerate(cell.sightings):
         row = stored.sightings.add()
-        row.picture = sighting.picture
-        row.place = _held_at(sighting.center_world)
+        row.index, row.picture = i, sighting.picture
+        row.kind = "ball" if isinstance(sighting, SphereSighting) else "point"
         if report is not None:
             seen = report.sightings[i]
             row.status, row.reason = seen.status, seen.reason
             row.residual = "–" if seen.rms_pixels is None else f"{seen.rms_pixels:.2f}"
-
-
-def _held_at(place: Any) -> str:
-    return "on the flange" if place is None else "  ".join(f"{x:.2f}" for x in place)
+    stored.sighting_index = max(0, min(stored.sighting_index, len(cell.sightings) - 1))
 
 
 def _fill_references(stored: Any, cell: Cell) -> None:

@@ -21,8 +21,11 @@ YELLOW: Color = (0.94, 0.89, 0.26, 1.0)
 GREEN: Color = (0.16, 0.78, 0.45, 1.0)
 ORANGE: Color = (0.98, 0.66, 0.1, 1.0)
 RED: Color = (0.94, 0.33, 0.2, 1.0)
+VIOLET: Color = (0.86, 0.62, 0.92, 1.0)
+GREY: Color = (0.62, 0.62, 0.62, 1.0)
 WHITE: Color = (1.0, 1.0, 1.0, 1.0)
 TEXT_SIZE = 13.0
+LABEL_SIZE = 11.0
 
 
 class LineBatch:
@@ -86,6 +89,20 @@ def draw_words(
     _plate(left, top - height, left + width, top)
     for i, (text, color) in enumerate(rows):
         blf.position(0, left + pad, top - line * (i + 1) + 0.22 * line, 0)
+        blf.color(0, *color)
+        blf.draw(0, text)
+
+
+def draw_labels(labels: Iterable[tuple[Array, str, Color]], scale: float) -> None:
+    """Write short texts beside region points (2,), each on a small dark plate."""
+    import blf
+
+    blf.size(0, LABEL_SIZE * scale)
+    pad, line = 3.0 * scale, 1.3 * LABEL_SIZE * scale
+    for (x, y), text, color in labels:
+        left, bottom = float(x) + 4 * scale, float(y)
+        _plate(left, bottom, left + blf.dimensions(0, text)[0] + 2 * pad, bottom + line)
+        blf.position(0, left + pad, bottom + 0.28 * line, 0)
         blf.color(0, *color)
         blf.draw(0, text)
 

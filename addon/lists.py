@@ -7,6 +7,7 @@ import bpy
 
 STATUS_ICONS = {
     "": "BLANK1",
+    "found": "MESH_CIRCLE",
     "used": "CHECKMARK",
     "doubtful": "QUESTION",
     "rejected": "CANCEL",
@@ -14,23 +15,20 @@ STATUS_ICONS = {
 
 
 class SightingList(bpy.types.UIList):
-    """Ball sightings: picture, place of the ball, and what calibration made of it."""
+    """Sightings: whether in use, number and picture, and what the pose leaves of it in pixels."""
 
     bl_idname = "MONOCELL_UL_sightings"
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_property, index):
         """One row."""
-        columns(layout, PurePath(item.picture).stem, item.place, item.residual, item)
-
-
-def columns(layout, picture, place, residual, item=None):
-    """Three columns, the same for the rows and their heading."""
-    icon = STATUS_ICONS[item.status] if item is not None else "BLANK1"
-    named = layout.split(factor=0.34, align=True)
-    named.label(text=picture, icon=icon)
-    row = named.split(factor=0.72, align=True)
-    row.label(text=place)
-    row.label(text=residual)
+        row = layout.row(align=True)
+        row.prop(item, "use", text="")
+        rest = row.row(align=True)
+        rest.active = item.use
+        named = rest.split(factor=0.78, align=True)
+        name = f"{item.index + 1}  {PurePath(item.picture).stem}"
+        named.label(text=name, icon=STATUS_ICONS[item.status])
+        named.label(text=item.residual)
 
 
 class ReferenceList(bpy.types.UIList):

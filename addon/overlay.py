@@ -18,7 +18,7 @@ class Overlay:
     """
 
     def __init__(self) -> None:
-        self._balls: tuple[Any, list[Any]] = ((), [])
+        self._balls: tuple[Any, list[Any], list[Any]] = ((), [], [])
         self._objects: dict[str, tuple[Any, list[Any]]] = {}
 
     def draw(self) -> None:
@@ -47,15 +47,23 @@ class Overlay:
             gpu.matrix.scale((right - x, below - y))
             for batch in batches:
                 batch.draw(scale)
+        from .drawing import draw_labels
+
+        _, _, labels = self._balls
+        points = frame.region_points([label.pixel for label in labels]) if labels else ()
+        draw_labels(
+            [(at, one.text, one.color) for at, one in zip(points, labels, strict=True)], scale
+        )
 
     def _ball_batches(self, scene: Any) -> list[Any]:
         stored = scene.monocell_cell
         key = (stored.text, stored.report, stored.sighting_index)
         if self._balls[0] != key:
-            from .overlay_lines import ball_strokes
+            from .overlay_lines import sighting_labels, sighting_strokes
 
-            strokes = ball_strokes(bare_cell(scene), stored_report(scene), stored.sighting_index)
-            self._balls = key, _batches(strokes)
+            cell, report = bare_cell(scene), stored_report(scene)
+            strokes = sighting_strokes(cell, report, stored.sighting_index)
+            self._balls = key, _batches(strokes), list(sighting_labels(cell, report))
         return self._balls[1]
 
     def _object_batches(self, context: Any, scene: Any) -> list[Any]:

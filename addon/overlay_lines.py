@@ -6,10 +6,13 @@ All in pixels of the undistorted view, which changes neither with zoom nor with 
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..core.arrays import Array
 from ..core.ball.sphere import outline_pixels
@@ -17,12 +20,18 @@ from ..core.camera import Camera
 from ..core.cell import Cell
 from ..core.picture.wireframe import finite_parts, wireframe
 from ..core.primitives import Primitive
-from ..core.sighting import SphereSighting
-from .drawing import GREEN, HALO, ORANGE, RED, SKY, YELLOW, Color
+from ..core.sighting import PointSighting, SphereSighting
+from .drawing import GREEN, GREY, HALO, ORANGE, RED, SKY, VIOLET, WHITE, YELLOW, Color
 from .report import Report
 
-STATUS_COLORS = {"used": GREEN, "doubtful": ORANGE, "rejected": RED}
+STATUS_COLORS = {"found": SKY, "used": GREEN, "doubtful": ORANGE, "rejected": RED}
+# what an outline is left with after the fit, in pixels: as good as pictures allow, and no longer so
+FINE_PIXELS, POOR_PIXELS = 0.1, 0.6
+# orange at least
+DOUBTFUL_SHARE = 2 / 3
 OUTLINE_POINTS = 120
+LONGEST_REASON = 40
+CROSS_PIXELS = 7.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,19 +43,66 @@ class Stroke:
     width: float
 
 
-def ball_strokes(cell: Cell, report: Report | None, active: int) -> Iterator[Stroke]:
-    """The outline of every ball: where it was found, or, if it was not, where it should be."""
-    if report is None:
-        return
-    for i, seen in enumerate(report.sightings):
-        ball = seen.ball or _expected(cell, i)
-        if ball is None:
+@dataclass(frozen=True, eq=False)
+class Label:
+    """Words that start at an undistorted pixel (2,)."""
+
+    pixel: Array
+    text: str
+    color: Color
+
+
+def sighting_strokes(cell: Cell, report: Report | None, active: int) -> Iterator[Stroke]:
+    """Outlines of the balls, crosses of the points, the active window and the advised places."""
+    for i, sighting in enumerate(cell.sightings):
+        width = 2.6 if i == active else 1.5
+        lines = _sighting_lines(cell, report, i)
+        if lines:
+            yield from haloed(lines, sighting_color(report, i, sighting.use), width)
+        if i == active and isinstance(sighting, SphereSighting) and sighting.window is not None:
+            yield from haloed((_rectangle(cell, sighting.window),), WHITE, 1.0)
+    for place in report.advice if report is not None else ():
+        x, y, z = cell.camera.pose.apply(np.array(place.place))
+        radius = place.radius_pixels / cell.camera.intrinsics.fx * float(z)
+        yield Stroke(_outline(cell, (float(x), float(y), float(z), radius)), VIOLET, 1.5)
+
+
+def sighting_labels(cell: Cell, report: Report | None) -> Iterator[Label]:
+    """The number of each sighting at its outline; the doubtful say why."""
+    for i, sighting in enumerate(cell.sightings):
+        lines = _sighting_lines(cell, report, i)
+        if not lines:
             continue
-        pixels = outline_pixels(
-            cell.camera.intrinsics.undistorted(), ball[:3], ball[3], OUTLINE_POINTS
-        )
-        lines = tuple(finite_parts(np.concatenate([pixels, pixels[:1]])))
-        yield from haloed(lines, STATUS_COLORS[seen.status], 2.6 if i == active else 1.5)
+        points = np.concatenate(lines)
+        corner = np.array([points[:, 0].max(), points[:, 1].min()])
+        told = f"{i + 1}"
+        if report is not None and report.sightings[i].reason:
+            told += "  " + textwrap.shorten(
+                report.sightings[i].reason, LONGEST_REASON, placeholder=" ..."
+            )
+        yield Label(corner, told, sighting_color(report, i, sighting.use))
+    for k, place in enumerate(report.advice if report is not None else ()):
+        told = f"next {k + 1}: {place.sigma_millimetres:.2f} mm"
+        yield Label(_view_pixels(cell, [place.pixel])[0], told, VIOLET)
+
+
+def sighting_color(report: Report | None, i: int, use: bool) -> Color:
+    """Green for an outline that the pose explains, over yellow to red as more of it is left."""
+    if not use:
+        return GREY
+    if report is None or not report.sightings[i].status:
+        return WHITE
+    seen = report.sightings[i]
+    if seen.status == "rejected" or seen.rms_pixels is None:
+        return STATUS_COLORS[seen.status]
+    share = (seen.rms_pixels - FINE_PIXELS) / (POOR_PIXELS - FINE_PIXELS)
+    if seen.status == "doubtful":
+        share = max(share, DOUBTFUL_SHARE)
+    stops = np.array([GREEN, YELLOW, ORANGE, RED])
+    r, g, b, a = (
+        float(np.interp(np.clip(share, 0, 1) * 3, range(4), stops[:, c])) for c in range(4)
+    )
+    return (r, g, b, a)
 
 
 def object_strokes(thing: Primitive, camera: Camera, active: bool) -> Iterator[Stroke]:
@@ -63,6 +119,43 @@ def object_strokes(thing: Primitive, camera: Camera, active: bool) -> Iterator[S
 def haloed(lines: tuple[Array, ...], color: Color, width: float) -> tuple[Stroke, Stroke]:
     """Lines over a darker, wider copy that keeps them readable on any picture."""
     return Stroke(lines, HALO, width + 2.0), Stroke(lines, color, width)
+
+
+def _sighting_lines(cell: Cell, report: Report | None, i: int) -> tuple[Array, ...]:
+    """A ball's outline where it was found or else should be; a cross where a point was clicked."""
+    sighting = cell.sightings[i]
+    if isinstance(sighting, PointSighting):
+        (u, v) = _view_pixels(cell, sighting.pixel[None])[0]
+        arm = CROSS_PIXELS
+        ways = ([[u - arm, v], [u + arm, v]], [[u, v - arm], [u, v + arm]])
+        return tuple(np.array(way) for way in ways) if np.isfinite([u, v]).all() else ()
+    if report is None:
+        return ()
+    ball = report.sightings[i].ball
+    if ball is None and report.sightings[i].status:
+        ball = _expected(cell, i)
+    return () if ball is None else _outline(cell, ball)
+
+
+def _outline(cell: Cell, ball: tuple[float, float, float, float]) -> tuple[Array, ...]:
+    pinhole = cell.camera.intrinsics.undistorted()
+    pixels = outline_pixels(pinhole, ball[:3], ball[3], OUTLINE_POINTS)
+    return tuple(finite_parts(np.concatenate([pixels, pixels[:1]])))
+
+
+def _rectangle(cell: Cell, window: tuple[float, float, float, float]) -> Array:
+    """A window of the picture as it came, as the undistorted view shows it."""
+    x, y, width, height = window
+    along = np.linspace(0, 1, 12)[:, None]
+    corners = np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height], [x, y]])
+    sides = [a + along * (b - a) for a, b in pairwise(corners)]
+    seen = _view_pixels(cell, np.concatenate(sides))
+    return seen[np.isfinite(seen).all(axis=1)]
+
+
+def _view_pixels(cell: Cell, pixels: ArrayLike) -> Array:
+    intrinsics = cell.camera.intrinsics
+    return intrinsics.undistorted().project(intrinsics.rays(np.asarray(pixels, dtype=float)))
 
 
 def _expected(cell: Cell, i: int) -> tuple[float, float, float, float] | None:

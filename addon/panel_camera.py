@@ -1,16 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar's second step: the sightings, the camera's pose, and how far to believe it."""
+"""The sidebar's second step: the ball sightings, and where they put the camera."""
+
+from typing import ClassVar
 
 import bpy
 import numpy as np
 
 from .cell_scene import camera_stands
 from .document import bare_cell, has_cell, stored_report
-from .lists import SightingList, columns
+from .lists import SightingList
+from .operators.add_pictures import AddPictures
+from .operators.add_point import AddPoint
+from .operators.add_sighting import AddSighting
 from .operators.calibrate import Calibrate
+from .operators.cancel_work import CancelWork
+from .operators.clear_window import ClearWindow
+from .operators.drag_window import DragWindow
+from .operators.find_all import FindAll
 from .operators.look_through import LookThrough
+from .operators.paste_sightings import PasteSightings
+from .operators.read_sightings import ReadSightings
+from .operators.remove_sighting import RemoveSighting
 from .operators.show_picture import ShowPicture
-from .panel_parts import DONE, DOUBT, NEXT, WAITING, CellPanel, numbers, paragraph, standing
+from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
+from .steps import FEWEST_SIGHTINGS, camera_step
 
 VERDICT_ICONS = {"good": "CHECKMARK", "weak": "ERROR", "failed": "CANCEL"}
 
@@ -23,70 +36,145 @@ class CameraPanel(CellPanel, bpy.types.Panel):
 
     def draw_header(self, context):
         """Blender's call."""
-        standing(self.layout, _standing(context.scene))
+        standing(self.layout, camera_step(context.scene))
 
     def draw(self, context):
         """Blender's call."""
         layout, scene = self.layout, context.scene
+        next_thing(layout, context, camera_step(scene))
         if not has_cell(scene):
-            paragraph(layout, context, "Comes after the picture.")
             return
         cell = bare_cell(scene)
         if cell.sightings:
-            self._draw_sightings(layout, context, cell)
-        self._draw_pose(layout, context, cell)
+            _draw_sightings(layout, context, cell)
+        if len(cell.sightings) < FEWEST_SIGHTINGS:
+            draw_adding(layout, context)
+        _draw_work(layout, context)
+        _draw_pose(layout, context, cell)
 
-    def _draw_sightings(self, layout, context, cell):
-        stored = context.scene.monocell_cell
-        columns(layout.row(), "Ball", "centre, m", "px")
-        layout.template_list(
-            SightingList.bl_idname, "", stored, "sightings", stored, "sighting_index", rows=4
-        )
-        active = stored.sightings[min(stored.sighting_index, len(stored.sightings) - 1)]
-        if active.reason:
-            paragraph(layout, context, f"{active.status}: {active.reason}", "INFO")
+
+class SightingsPanel(CellPanel, bpy.types.Panel):
+    """Adds sightings: from files, from what was copied, from a place and the picture shown."""
+
+    bl_idname = "MONOCELL_PT_sightings"
+    bl_parent_id = CameraPanel.bl_idname
+    bl_label = "More Sightings"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Until there are enough, the panel above shows the same."""
+        scene = context.scene
+        return has_cell(scene) and len(scene.monocell_cell.sightings) >= FEWEST_SIGHTINGS
+
+    def draw(self, context):
+        """Blender's call."""
+        draw_adding(self.layout, context)
+
+
+def draw_adding(layout, context):
+    """The ways to add sightings."""
+    inputs = context.scene.monocell_inputs
+    column = layout.column(align=True)
+    row = column.row(align=True)
+    row.prop(inputs, "ball_radius", text="Radius")
+    row.prop(inputs, "position_unit", text="")
+    column.operator(AddPictures.bl_idname, text="Pictures + Copied Positions", icon="ADD")
+    row = column.row(align=True)
+    row.operator(ReadSightings.bl_idname, text="Read File", icon="FILE_FOLDER")
+    row.operator(PasteSightings.bl_idname, text="Paste", icon="PASTEDOWN").becomes = "NEW"
+    layout.label(text="In the picture shown")
+    layout.row(align=True).prop(inputs, "place_source", expand=True)
+    _draw_place(layout, context, inputs)
+    row = layout.row(align=True)
+    row.operator(AddSighting.bl_idname, icon="SPHERE")
+    row.operator(AddPoint.bl_idname, icon="EMPTY_AXIS")
+
+
+def _draw_place(layout, context, inputs):
+    column = layout.column(align=True)
+    if inputs.place_source == "TYPED":
+        column.prop(inputs, "place", text="")
+        return
+    if inputs.place_source == "CURSOR":
+        column.prop(context.scene.cursor, "location", text="")
+        return
+    if inputs.place_source == "OBJECT":
+        active = context.view_layer.objects.active
+        column.label(text=active.name if active else "no active object", icon="OBJECT_DATA")
+    else:
+        column.prop(inputs, "urdf", text="", placeholder="Robot, URDF")
+        column.prop(inputs, "flange", text="", placeholder="Flange link (the last)")
+        row = column.row(align=True)
+        row.prop(inputs, "joints", text="", placeholder="Joints")
+        row.prop(inputs, "joint_unit", text="")
+    column.prop(inputs, "offset_known", text="Ball's place on it is known")
+    if inputs.offset_known:
+        column.prop(inputs, "offset", text="")
+
+
+def _draw_sightings(layout, context, cell):
+    stored = context.scene.monocell_cell
+    row = layout.row()
+    row.template_list(
+        SightingList.bl_idname, "", stored, "sightings", stored, "sighting_index", rows=5
+    )
+    active = stored.sightings[stored.sighting_index]
+    side = row.column(align=True)
+    side.operator(RemoveSighting.bl_idname, text="", icon="REMOVE")
+    side.separator()
+    shown = side.operator(ShowPicture.bl_idname, text="", icon="IMAGE_BACKGROUND")
+    # a second press goes back to the cell's own picture
+    back = active.picture == stored.shown_picture and cell.picture is not None
+    shown.picture = cell.picture if back else active.picture
+    side.operator(DragWindow.bl_idname, text="", icon="SELECT_SET")
+    side.operator(ClearWindow.bl_idname, text="", icon="X")
+    side.operator(PasteSightings.bl_idname, text="", icon="PASTEDOWN").becomes = "PLACES"
+    if active.reason:
+        paragraph(layout, context, f"{active.status}: {active.reason}", "INFO")
+    if cell.sightings[active.index].center_world is not None:
+        column = layout.column(align=True)
+        column.row(align=True).prop(active, "center", text="")
+        if active.kind == "ball":
+            column.prop(active, "radius")
+
+
+def _draw_work(layout, context):
+    work = context.window_manager.monocell_work
+    if work.title:
         row = layout.row(align=True)
-        again = "Calibrate Again" if cell.camera.camera_from_world is not None else "Calibrate"
-        row.operator(Calibrate.bl_idname, text=again, icon="CON_CAMERASOLVER")
-        shown = row.operator(ShowPicture.bl_idname, text="", icon="IMAGE_BACKGROUND")
-        # a second press goes back to the cell's own picture
-        back = active.picture == stored.shown_picture and cell.picture is not None
-        shown.picture = cell.picture if back else active.picture
+        row.progress(factor=work.share, text=f"{work.title}: {work.name}")
+        row.operator(CancelWork.bl_idname, text="", icon="CANCEL")
+        return
+    known = bare_cell(context.scene).camera.camera_from_world is not None
+    row = layout.row(align=True)
+    row.scale_y = 1.3
+    row.operator(FindAll.bl_idname, icon="VIEWZOOM")
+    row.operator(
+        Calibrate.bl_idname,
+        text="Calibrate Again" if known else "Calibrate",
+        icon="CON_CAMERASOLVER",
+    )
 
-    def _draw_pose(self, layout, context, cell):
-        camera, report = cell.camera, stored_report(context.scene)
-        if camera.camera_from_world is None:
-            paragraph(layout, context, _what_is_missing(cell), "INFO")
-            return
+
+def _draw_pose(layout, context, cell):
+    camera, report = cell.camera, stored_report(context.scene)
+    if report is not None and report.verdict:
+        layout.label(text=f"Calibration {report.verdict}", icon=VERDICT_ICONS[report.verdict])
+    if camera.camera_from_world is not None:
         if not camera_stands(context.scene):
             alert = layout.column()
             alert.alert = True
             paragraph(alert, context, "Blender's camera was changed; models miss the picture.")
             layout.operator(LookThrough.bl_idname, text="Put It Back", icon="VIEW_CAMERA")
         numbers(layout, _pose_rows(camera, report))
-        if report is not None:
-            verdict = f"Calibration {report.verdict}"
-            layout.label(text=verdict, icon=VERDICT_ICONS[report.verdict])
-            for warning in report.warnings:
-                paragraph(layout, context, warning, "DOT")
-
-
-def _standing(scene):
-    if not has_cell(scene):
-        return WAITING
-    if bare_cell(scene).camera.camera_from_world is None:
-        return NEXT
-    report = stored_report(scene)
-    return DONE if report is None or report.verdict == "good" else DOUBT
-
-
-def _what_is_missing(cell):
-    if cell.sightings:
-        return "Not calibrated yet: the camera stands at a guessed place."
-    return (
-        "Not calibrated, and without ball sightings it can't be: open a document with sightings "
-        "or with camera_from_world."
-    )
+    if report is None:
+        return
+    for warning in report.warnings:
+        paragraph(layout, context, warning, "DOT")
+    if report.advice:
+        layout.label(text="Hold the ball here next", icon="OUTLINER_OB_LIGHTPROBE")
+        numbers(layout, _advice_rows(report))
 
 
 def _pose_rows(camera, report):
@@ -97,6 +185,14 @@ def _pose_rows(camera, report):
         yield "± 1 sigma", f"{x:.2f}  {y:.2f}  {z:.2f} mm"
         x, y, z = np.degrees(camera.rotation_sigma())
         yield "Turned ±", f"{x:.3f}  {y:.3f}  {z:.3f}°"
-    if report is not None:
+    if report is not None and report.verdict:
+        if report.surface:
+            yield "A point ±", report.surface
         yield "Outlines", f"{report.rms_pixels:.2f} px rms"
         yield "Edge bias", f"{report.edge_bias_pixels:+.2f} px"
+
+
+def _advice_rows(report):
+    for k, one in enumerate(report.advice):
+        x, y, z = one.place
+        yield f"{k + 1}", f"{x:.2f}  {y:.2f}  {z:.2f} m: ± {one.sigma_millimetres:.2f} mm"

@@ -8,7 +8,8 @@ from .lists import ObjectList, ReferenceList
 from .operators.add_box import AddBox
 from .operators.add_cylinder import AddCylinder
 from .operators.solve_again import SolveAgain
-from .panel_parts import DONE, NEXT, WAITING, CellPanel, numbers, paragraph, standing
+from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
+from .steps import count_objects, model_step
 
 
 class ModelPanel(CellPanel, bpy.types.Panel):
@@ -19,18 +20,15 @@ class ModelPanel(CellPanel, bpy.types.Panel):
 
     def draw_header(self, context):
         """Blender's call."""
-        standing(self.layout, _standing(context.scene))
+        standing(self.layout, model_step(context.scene))
 
     def draw(self, context):
         """Blender's call."""
         layout, scene = self.layout, context.scene
-        if not has_cell(scene):
-            paragraph(layout, context, "Comes after the camera.")
+        next_thing(layout, context, model_step(scene))
+        if not has_cell(scene) or bare_cell(scene).camera.camera_from_world is None:
             return
-        cell, stored = bare_cell(scene), scene.monocell_cell
-        if cell.camera.camera_from_world is None:
-            paragraph(layout, context, "Calibrate first: a picture has no scale without it.")
-            return
+        stored = scene.monocell_cell
         layout.label(text="Stands on")
         layout.template_list(
             ReferenceList.bl_idname,
@@ -47,17 +45,11 @@ class ModelPanel(CellPanel, bpy.types.Panel):
         row.operator(AddBox.bl_idname, icon="MESH_CUBE")
         row.operator(AddCylinder.bl_idname, icon="MESH_CYLINDER")
         layout.prop(scene.monocell_inputs, "pick_sigma_pixels", text="Pick noise (px)")
-        self._draw_objects(layout, context, cell)
+        self._draw_objects(layout, context)
 
-    def _draw_objects(self, layout, context, cell):
+    def _draw_objects(self, layout, context):
         stored = context.scene.monocell_cell
-        if cell.sketches:
-            waiting = f"{len(cell.sketches)} picked in the document, not solved yet."
-            paragraph(layout, context, waiting, "INFO")
-        if stored.collection is None or not len(stored.collection.objects):
-            if not cell.sketches:
-                paragraph(layout, context, "No objects yet: add one, then click on the picture.")
-        else:
+        if count_objects(context.scene):
             layout.template_list(
                 ObjectList.bl_idname,
                 "",
@@ -69,13 +61,6 @@ class ModelPanel(CellPanel, bpy.types.Panel):
             )
             _draw_sizes(layout, context)
         layout.operator(SolveAgain.bl_idname, icon="FILE_REFRESH")
-
-
-def _standing(scene):
-    if not has_cell(scene) or bare_cell(scene).camera.camera_from_world is None:
-        return WAITING
-    collection = scene.monocell_cell.collection
-    return DONE if collection is not None and len(collection.objects) else NEXT
 
 
 def _draw_sizes(layout, context):

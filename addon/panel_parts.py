@@ -39,9 +39,36 @@ def numbers(layout, rows):
         split.label(text=value)
 
 
-def standing(layout, icon):
+def standing(layout, step):
     """The mark in a panel's head that says how far its step has come."""
-    layout.label(text="", icon=icon)
+    layout.label(text="", icon=MARKS[step.mark])
 
 
-DONE, NEXT, WAITING, DOUBT = "CHECKMARK", "RIGHTARROW_THIN", "BLANK1", "ERROR"
+def next_thing(layout, context, step):
+    """What the step says comes next; a doubt has its sign."""
+    if step.said:
+        paragraph(layout, context, step.said, "ERROR" if step.mark == "doubt" else "NONE")
+
+
+def camera_inputs(layout, inputs):
+    """The fields that state a camera which is not known from a document."""
+    layout.row().prop(inputs, "camera_source", expand=True)
+    column = layout.column(align=True)
+    if inputs.camera_source == "FILE":
+        column.prop(inputs, "camera", text="", placeholder="Camera file (YAML, XML, JSON, TXT)")
+        return
+    if inputs.camera_source == "PIXELS":
+        column.prop(inputs, "focal_x")
+        column.prop(inputs, "focal_y")
+    else:
+        column.prop(inputs, "field_degrees")
+    column.prop(inputs, "centred", text="Principal point in the middle")
+    if not inputs.centred:
+        column.prop(inputs, "centre_x")
+        column.prop(inputs, "centre_y")
+    column.prop(inputs, "lens_model", text="")
+    if inputs.lens_model != "none":
+        column.prop(inputs, "coefficients", text="", placeholder="k1 k2 p1 p2 ...")
+
+
+MARKS = {"done": "CHECKMARK", "next": "RIGHTARROW_THIN", "waiting": "BLANK1", "doubt": "ERROR"}

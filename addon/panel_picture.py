@@ -7,7 +7,9 @@ from .document import bare_cell, has_cell
 from .operators.look_through import LookThrough
 from .operators.open_cell import OpenCell
 from .operators.open_picture import OpenPicture
-from .panel_parts import DONE, NEXT, CellPanel, numbers, paragraph, standing
+from .operators.open_sample import OpenSample
+from .panel_parts import CellPanel, camera_inputs, next_thing, numbers, standing
+from .steps import picture_step
 
 
 class PicturePanel(CellPanel, bpy.types.Panel):
@@ -18,37 +20,49 @@ class PicturePanel(CellPanel, bpy.types.Panel):
 
     def draw_header(self, context):
         """Blender's call."""
-        standing(self.layout, DONE if has_cell(context.scene) else NEXT)
+        standing(self.layout, picture_step(context.scene))
 
     def draw(self, context):
         """Blender's call."""
         layout, scene = self.layout, context.scene
+        next_thing(layout, context, picture_step(scene))
         if has_cell(scene):
-            self._draw_opened(layout, scene)
-            return
-        paragraph(layout, context, "Open a cell document, or start from a picture.")
-        layout.operator(OpenCell.bl_idname, icon="FILE_FOLDER")
-        column = layout.column(align=True)
-        inputs = scene.monocell_inputs
-        column.prop(inputs, "picture", text="", placeholder="Picture")
-        column.prop(inputs, "camera", text="", placeholder="Camera file (YAML, XML, JSON)")
-        ready = column.row()
-        ready.enabled = bool(inputs.picture and inputs.camera)
-        opened = ready.operator(OpenPicture.bl_idname, icon="IMAGE_DATA")
-        opened.picture, opened.camera = inputs.picture, inputs.camera
+            _draw_opened(layout, scene)
+        else:
+            _draw_start(layout, scene.monocell_inputs)
 
-    def _draw_opened(self, layout, scene):
-        camera = bare_cell(scene).camera.intrinsics
-        numbers(
-            layout,
-            (
-                ("Shown", scene.monocell_cell.shown_picture or "no picture"),
-                ("Size", f"{camera.width} × {camera.height} px"),
-                ("Focal", f"{camera.fx:.1f}, {camera.fy:.1f} px"),
-                ("Centre", f"{camera.cx:.1f}, {camera.cy:.1f} px"),
-                ("Lens", camera.distortion.model.replace("_", " ")),
-            ),
-        )
+
+def _draw_start(layout, inputs):
+    column = layout.column(align=True)
+    column.operator(OpenSample.bl_idname, icon="OUTLINER_OB_CAMERA")
+    column.operator(OpenCell.bl_idname, icon="FILE_FOLDER")
+    layout.separator(type="LINE")
+    layout.prop(inputs, "picture", text="", placeholder="Picture")
+    camera_inputs(layout, inputs)
+    ready = layout.row()
+    ready.enabled = bool(inputs.picture and (inputs.camera or inputs.camera_source != "FILE"))
+    opened = ready.operator(OpenPicture.bl_idname, icon="IMAGE_DATA")
+    opened.picture = inputs.picture
+
+
+def _draw_opened(layout, scene):
+    stored, camera = scene.monocell_cell, bare_cell(scene).camera.intrinsics
+    if stored.camera is not None and len(stored.camera.data.background_images):
+        plate = stored.camera.data.background_images[0]
         row = layout.row(align=True)
-        row.operator(LookThrough.bl_idname, text="Look Through", icon="VIEW_CAMERA")
-        row.operator(OpenCell.bl_idname, text="Open Another", icon="FILE_FOLDER")
+        seen = "HIDE_OFF" if plate.show_background_image else "HIDE_ON"
+        row.prop(plate, "show_background_image", text="", icon=seen)
+        row.prop(plate, "alpha", text="Opacity", slider=True)
+    numbers(
+        layout,
+        (
+            ("Shown", stored.shown_picture or "no picture"),
+            ("Size", f"{camera.width} × {camera.height} px"),
+            ("Focal", f"{camera.fx:.1f}, {camera.fy:.1f} px"),
+            ("Centre", f"{camera.cx:.1f}, {camera.cy:.1f} px"),
+            ("Lens", camera.distortion.model.replace("_", " ")),
+        ),
+    )
+    row = layout.row(align=True)
+    row.operator(LookThrough.bl_idname, text="Look Through", icon="VIEW_CAMERA")
+    row.operator(OpenCell.bl_idname, text="Open Another", icon="FILE_FOLDER")

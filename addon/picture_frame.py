@@ -17,6 +17,7 @@ from ..core.intrinsics import Intrinsics
 LEAST_ZOOM, MOST_ZOOM = -30.0, 600.0
 # what is left free round a picture that is fitted into the view
 MARGIN_SHARE = 0.03
+SIDE_SAMPLES = 9
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,25 @@ def fit_picture(
         (region.width - (left + right)) / (4 * region.width * factor),
         (region.height - (bottom + top)) / (4 * region.height * factor),
     )
+
+
+def window_of(
+    frame: PictureFrame, start: tuple[float, float], end: tuple[float, float]
+) -> tuple[float, float, float, float]:
+    """The window (x, y, width, height) of the picture as it came round a rectangle in the region.
+
+    A straight side of the view is bent in the picture: its whole length counts.
+    """
+    (x0, y0), (x1, y1) = start, end
+    along = np.linspace(0.0, 1.0, SIDE_SAMPLES)
+    across, up = x0 + along * (x1 - x0), y0 + along * (y1 - y0)
+    sides = [(x, y) for y in (y0, y1) for x in across] + [(x, y) for x in (x0, x1) for y in up]
+    found = [frame.picture_pixel(x, y) for x, y in sides]
+    pixels = np.array([pixel for pixel in found if pixel is not None]).reshape(-1, 2)
+    most = np.array([frame.intrinsics.width, frame.intrinsics.height]) - 0.5
+    clipped = np.clip(pixels, -0.5, most) if len(pixels) else np.zeros((1, 2))
+    (left, top), (width, height) = clipped.min(axis=0), np.ptp(clipped, axis=0)
+    return float(left), float(top), float(width), float(height)
 
 
 def free_part(area: Any, region: Any) -> tuple[float, float, float, float]:

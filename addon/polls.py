@@ -16,6 +16,21 @@ class NeedsCell:
         return False
 
 
+class NeedsSighting(NeedsCell):
+    """For operators that work on the active sighting."""
+
+    @classmethod
+    def poll(cls, context):
+        """Blender's question whether the operator can run now."""
+        if not super().poll(context):
+            return False
+        stored = context.scene.monocell_cell
+        if 0 <= stored.sighting_index < len(stored.sightings):
+            return True
+        cls.poll_message_set("No sighting is active: add one, or choose one in the list")
+        return False
+
+
 class NeedsPose(NeedsCell):
     """For operators that need to know where the camera is."""
 

@@ -2,20 +2,86 @@
 """What a scene holds of its cell: the document's text, its report, and rows for the lists."""
 
 import bpy
+import numpy as np
 from bpy.props import (
+    BoolProperty,
     CollectionProperty,
     FloatProperty,
+    FloatVectorProperty,
     IntProperty,
     PointerProperty,
     StringProperty,
 )
 
+from .document import bare_cell
+from .inputs import SceneInputs
+from .place_inputs import decimals
+from .sightings import edit_sighting
+
+
+def _sighting(row):
+    return bare_cell(row.id_data).sightings[row.index]
+
+
+def _use(row):
+    return _sighting(row).use
+
+
+def _set_use(row, value):
+    edit_sighting(row.id_data, row.index, use=value)
+
+
+def _place(row):
+    place = _sighting(row).center_world
+    return (0.0, 0.0, 0.0) if place is None else tuple(place)
+
+
+def _set_place(row, value):
+    """The numbers that were typed; the others keep the digits that Blender does not hold."""
+    old = np.array(_place(row))
+    typed = np.float32(value) != np.float32(old)
+    edit_sighting(row.id_data, row.index, center_world=np.where(typed, decimals(value), old))
+
+
+def _radius(row):
+    return getattr(_sighting(row), "radius", 0.0)
+
+
+def _set_radius(row, value):
+    edit_sighting(row.id_data, row.index, radius=float(decimals([value])[0]))
+
 
 class SightingRow(bpy.types.PropertyGroup):
-    """One line of the list of sightings: texts to show, nothing to compute with."""
+    """One line of the list of sightings: texts to show, and doors to the document's numbers."""
 
+    index: IntProperty(name="Its number in the document, from 0")
+    kind: StringProperty(name="ball, point, or flange where the offset is unknown")
+    use: BoolProperty(
+        name="Use",
+        description="Whether it takes part in finding and calibrating",
+        get=_use,
+        set=_set_use,
+    )
+    center: FloatVectorProperty(
+        name="Place",
+        description="Centre of the ball, or the point, in the world, metres",
+        size=3,
+        subtype="XYZ",
+        unit="LENGTH",
+        precision=4,
+        get=_place,
+        set=_set_place,
+    )
+    radius: FloatProperty(
+        name="Radius",
+        description="Radius of the ball, metres",
+        min=1e-5,
+        precision=4,
+        unit="LENGTH",
+        get=_radius,
+        set=_set_radius,
+    )
     picture: StringProperty(name="Picture")
-    place: StringProperty(name="Centre of the ball in the world, m, to a centimetre")
     status: StringProperty(name="Status")
     residual: StringProperty(name="Residual, pixels rms")
     reason: StringProperty(name="Reason")
@@ -69,30 +135,16 @@ class SceneCell(bpy.types.PropertyGroup):
     )
 
 
-class SceneInputs(bpy.types.PropertyGroup):
-    """What the user fills in before there is a cell, and how sure the picks are."""
+class Work(bpy.types.PropertyGroup):
+    """What runs in the background, for the panels; an empty title when nothing does."""
 
-    picture: StringProperty(
-        name="Picture",
-        description="The picture of the cell, as it came from the camera",
-        subtype="FILE_PATH",
-    )
-    camera: StringProperty(
-        name="Camera file",
-        description="Camera file: ROS camera_info YAML, OpenCV FileStorage or monocell JSON",
-        subtype="FILE_PATH",
-    )
-    pick_sigma_pixels: FloatProperty(
-        name="Pick noise",
-        description="How far off your clicks are, 1 sigma in pixels of the picture",
-        default=1.0,
-        min=0.05,
-        max=50.0,
-        precision=2,
-    )
+    title: StringProperty(name="What is being done")
+    name: StringProperty(name="What it has come to")
+    share: FloatProperty(name="How much is done", min=0.0, max=1.0)
+    cancel: BoolProperty(name="Whether it was told to end")
 
 
-CLASSES = (SightingRow, ReferenceRow, SceneCell, SceneInputs)
+CLASSES = (SightingRow, ReferenceRow, SceneCell, SceneInputs, Work)
 
 
 def register():
@@ -101,10 +153,12 @@ def register():
         bpy.utils.register_class(cls)
     bpy.types.Scene.monocell_cell = PointerProperty(type=SceneCell)
     bpy.types.Scene.monocell_inputs = PointerProperty(type=SceneInputs)
+    bpy.types.WindowManager.monocell_work = PointerProperty(type=Work)
 
 
 def unregister():
     """Take them off again; what they hold stays in the file."""
+    del bpy.types.WindowManager.monocell_work
     del bpy.types.Scene.monocell_inputs
     del bpy.types.Scene.monocell_cell
     for cls in reversed(CLASSES):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one place where what core refuses becomes Blender's red message and a cancelled operator."""
+"""Where core's refusals become Blender's: an operator's method in, one that reports errors out."""
 
 from functools import wraps
 
@@ -14,7 +14,24 @@ def refuses(execute):
         try:
             return execute(self, context)
         except MonocellError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+            return _told(self, error)
 
     return translated
+
+
+def refuses_to_start(invoke):
+    """The same for an operator's `invoke`, whose arguments Blender counts."""
+
+    @wraps(invoke)
+    def translated(self, context, event):
+        try:
+            return invoke(self, context, event)
+        except MonocellError as error:
+            return _told(self, error)
+
+    return translated
+
+
+def _told(operator, error):
+    operator.report({"ERROR"}, str(error))
+    return {"CANCELLED"}

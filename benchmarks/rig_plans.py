@@ -63,12 +63,12 @@ def random_plan(family: str, seed: int) -> RigPlan:
     """The rig of that family and seed, always the same."""
     rng = np.random.default_rng([FAMILIES.index(family), seed])
     varied = family == "varied"
-    lab = _lab(rng, varied)
+    lab = random_lab(rng, varied)
     camera = _camera(rng, varied)
     if family == "paper":
         lens = camera.intrinsics.undistorted()
         camera = replace(camera, intrinsics=lens)
-    lab = replace(lab, to_lamp=_before_the_walls(lab.to_lamp, camera))
+    lab = replace(lab, to_lamp=before_the_walls(lab.to_lamp, camera))
     count = int(rng.integers(4, 9) if varied else rng.integers(5, 9))
     if family == "paper":
         positions = _positions(rng, camera, 80, 0.0)
@@ -192,7 +192,8 @@ def _pointing(along: np.ndarray, turn: float, place: np.ndarray) -> Pose:
     return Pose(rotation, place - REACH * along)
 
 
-def _lab(rng: np.random.Generator, varied: bool) -> Lab:
+def random_lab(rng: np.random.Generator, varied: bool) -> Lab:
+    """How a room may be painted and lit; `varied` also from the sides."""
     light = np.clip(rng.uniform(0.1, 0.65) * rng.uniform(0.7, 1.2, 3), 0.03, 0.8)
     grains = ((1.2, 38.0, 1.0), (25.0, 25.0, 25.0), (60.0, 60.0, 60.0), (6.0, 6.0, 6.0))
     away = rng.uniform(-0.6, 0.6, 2) if not varied else rng.uniform(-1.6, 1.6, 2)
@@ -210,7 +211,7 @@ def _lab(rng: np.random.Generator, varied: bool) -> Lab:
     )
 
 
-def _before_the_walls(to_lamp: np.ndarray, camera: Camera) -> np.ndarray:
+def before_the_walls(to_lamp: np.ndarray, camera: Camera) -> np.ndarray:
     """The far sides have walls: a lamp that leans far that way would light their backs."""
     away = -np.sign(camera.centre_world[:2] - [0.35, 0.0])
     lean = np.minimum(to_lamp[:2] * away, 0.6) * away

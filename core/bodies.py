@@ -162,11 +162,10 @@ def _in_order(bodies: list[Body], things: Things, index: Mapping[str, int]) -> t
                 f"objects[{bodies[waiting[0]].owner}].motion.to: the joints of {named} hang on "
                 "each other in a circle; one of them has to stand by itself"
             )
+        # dictionaries keep their order: that of the numbers given here
         placed |= {i: len(placed) + n for n, i in enumerate(ready)}
         waiting = [i for i in waiting if i not in ready]
-    numbers: dict[int | None, int | None] = {None: None}
-    numbers.update(placed.items())
     return tuple(
-        replace(bodies[i], parent=numbers[parents[i]])
-        for i in sorted(placed, key=lambda i: placed[i])
+        replace(bodies[i], parent=None if parent is None else placed[parent])
+        for i, parent in ((i, parents[i]) for i in placed)
     )

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,8 +16,11 @@ from .primitives import Primitive
 from .reference import PendingReference, Reference
 from .references.placed import reference_of_feature
 from .relation import RELATIONS, Relation
+from .shape.features import feature_names
 from .sighting import Sighting
 from .sketch import Sketch
+
+Named = Mapping[str, Primitive | Sketch]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +59,10 @@ class Cell:
     def placed_references(self) -> tuple[Reference, ...]:
         """The references that have a place."""
         return tuple(r for r in self.references if not isinstance(r, PendingReference))
+
+    def in_use(self) -> Cell:
+        """The cell with those of its sightings only that are not switched off."""
+        return replace(self, sightings=tuple(s for s in self.sightings if s.use))
 
     def path_of(self, picture: str) -> Path:
         """The file of a picture named in the document."""
@@ -110,48 +117,54 @@ def check_names(
     """
     _refuse_twins("references", (reference.name for reference in references))
     _refuse_twins("objects", (thing.name for thing in things))
-    planes, names = [reference.name for reference in references], [thing.name for thing in things]
+    known, named = {r.name for r in references}, {thing.name: thing for thing in things}
     for i, thing in enumerate(things):
         where = f"objects[{i}]"
         if thing.on is not None:
-            _check_path(thing.on, f"{where}.on", thing.name, planes, names)
+            _check_path(thing.on, f"{where}.on", thing.name, known, named)
         for j, relation in enumerate(thing.relations):
-            _check_relation(relation, f"{where}.relations[{j}]", thing.name, planes, names)
+            _check_relation(relation, f"{where}.relations[{j}]", thing.name, known, named)
     rigid_bodies(things, composites)
 
 
-def feature_owner(path: str, names: Collection[str]) -> str | None:
+def feature_owner(path: str, names: Container[str]) -> str | None:
     """The object that a feature path such as `crate.top` speaks of; None when there is none."""
     name, dot, feature = path.rpartition(".")
     return name if dot and feature and name in names else None
 
 
 def _check_path(
-    path: str, where: str, own: str, references: Collection[str], names: Collection[str]
+    path: str, where: str, own: str, references: Collection[str], things: Named
 ) -> None:
-    """A reference, or a feature of an object other than `own`."""
+    """Raises InvalidValue for what is no reference, and no feature of another object."""
     if path in references:
         return
-    owner = feature_owner(path, names)
-    if owner == own:
-        raise InvalidValue(f"{where}: {path!r} is its own feature; name something else")
+    owner = feature_owner(path, things)
     if owner is None:
         listed = ", ".join(sorted(references)) or "none at all"
-        if path in names:
+        if path in things:
             listed = f"an object of that name: say which of its features, such as {path}.top"
         raise InvalidValue(f"{where}: no reference is called {path!r}; there is {listed}")
+    if owner == own:
+        raise InvalidValue(f"{where}: {path!r} is a feature of its own; name something else")
+    thing, feature = things[owner], path.rpartition(".")[2]
+    if isinstance(thing, Primitive) and feature not in feature_names(thing):
+        raise InvalidValue(
+            f"{where}: {path!r}: a {thing.kind} has no feature {feature!r}; it has "
+            f"{', '.join(feature_names(thing))}"
+        )
 
 
 def _check_relation(
-    relation: Relation, where: str, own: str, references: Collection[str], names: Collection[str]
+    relation: Relation, where: str, own: str, references: Collection[str], things: Named
 ) -> None:
     if RELATIONS[relation.kind] != "object":
-        _check_path(relation.to, f"{where}.to", own, references, names)
-    elif relation.to == own or relation.to not in names:
+        _check_path(relation.to, f"{where}.to", own, references, things)
+    elif relation.to == own or relation.to not in things:
         told = "is the object itself" if relation.to == own else "is the name of no object"
         raise InvalidValue(f"{where}.to: {relation.to!r} {told}; name another object")
     if relation.about is not None:
-        _check_path(relation.about, f"{where}.about", own, references, names)
+        _check_path(relation.about, f"{where}.about", own, references, things)
 
 
 def check_sightings(sightings: Sequence[Sighting], mount: Mount | None) -> None:

@@ -25,7 +25,8 @@ class SphereSighting:
     to look, the whole picture without it. Before a fixed camera, `world_from_flange` takes the
     place of `center_world`: the ball sits somewhere on the flange, at the same offset in all
     sightings of one `target`. For a camera on the flange it is where the flange stood, and without
-    `center_world` the target's place in the world is unknown.
+    `center_world` the target's place in the world is unknown. What is not in `use` is kept, but
+    left out of calibrations.
     """
 
     picture: str
@@ -34,6 +35,7 @@ class SphereSighting:
     window: tuple[float, float, float, float] | None = None
     world_from_flange: Pose | None = None
     target: str = ""
+    use: bool = True
 
     def __post_init__(self) -> None:
         _check_place(self)
@@ -57,7 +59,7 @@ class SphereSighting:
 class PointSighting:
     """A known point clicked in a picture at `pixel` (2,), both numbers to 1 `sigma_pixels`.
 
-    Its place is told as a ball's is.
+    Its place is told as a ball's is, and so is `use`.
     """
 
     picture: str
@@ -66,6 +68,7 @@ class PointSighting:
     sigma_pixels: float = CLICK_SIGMA_PIXELS
     world_from_flange: Pose | None = None
     target: str = ""
+    use: bool = True
 
     def __post_init__(self) -> None:
         _check_place(self)

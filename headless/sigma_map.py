@@ -42,7 +42,7 @@ def drawn_map(cell: Cell, calibration: Calibration, surface: SurfaceAccuracy) ->
     from ..core.picture.sigma_overlay import draw_sigma_map
 
     camera = calibration.camera
-    first = cell.sightings[calibration.used_indices[0]].picture
+    first = cell.in_use().sightings[calibration.used_indices[0]].picture
     photograph = read_picture(cell.path_of(cell.picture or first), camera.intrinsics)
     if photograph.dtype == np.uint16:
         photograph = (photograph >> 8).astype(np.uint8)
@@ -62,7 +62,7 @@ def _balls(cell: Cell, calibration: Calibration) -> list[BallOutline]:
     camera, balls = calibration.camera, []
     if calibration.mount is not None:
         return balls
-    for report, sighting in zip(calibration.sightings, cell.sightings, strict=True):
+    for report, sighting in zip(calibration.sightings, cell.in_use().sightings, strict=True):
         centre = camera.pose.apply(report.center_world)
         if isinstance(sighting, SphereSighting) and centre[2] > sighting.radius:
             pixels = outline_pixels(camera.intrinsics, centre, sighting.radius)

@@ -3,12 +3,13 @@
 
 Every node's `extras.monocell` is its object's entry of the document without picks, still z up, and
 the scene's extras hold the camera with all that a glTF camera can't: principal point, distortion,
-covariance. So nothing is lost, and robot programs get exact shapes instead of meshes.
+covariance. So nothing is lost, and robot programs get exact shapes instead of meshes. A composite
+is a node without mesh above the nodes of its parts.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -18,19 +19,23 @@ import bpy
 from ..core.atomic import atomic_path
 from ..core.camera import Camera
 from ..core.cell import Cell
-from ..core.document.entries import camera_entry, object_entry
+from ..core.document.entries import camera_entry, composite_entry, object_entry
 from ..core.document.reference_entries import reference_entry
 from ..core.errors import InvalidValue, RenderFailed
+from ..core.orphans import without_lost_joints
 from ..core.primitives import Primitive
+from ..core.shape.tessellation import tessellated
 from .blender_camera import DISTORTION, place_camera
 from .glb_names import named_by_their_entries
 from .materials import PLAIN, surface
-from .meshes import fill_mesh, shape_of
+from .meshes import fill_mesh
 from .quiet import quiet_stdout
 from .textures import is_textured, painted_mesh
 from .transforms import stand
 
 CAMERA_NODE = "camera"
+# what tells the extras of a composite's node from those of an object
+COMPOSITE = "composite"
 VERSION = 1
 
 
@@ -88,34 +93,53 @@ def _build_objects(scene: Any, cell: Cell, built: list[Any]) -> None:
     """Objects of the same shape and colour share a mesh, as glTF lets them."""
     materials: dict[tuple[float, ...], Any] = {}
     meshes: dict[tuple[Any, ...], Any] = {}
+    parents = _build_composites(scene, cell, built)
     for thing in cell.objects:
         if is_textured(thing):
             mesh, made = painted_mesh(thing, cell.folder)
             built += made
-            _stand(scene, thing, mesh, built)
+            _stand(scene, thing, mesh, parents, built)
             continue
         color = tuple(PLAIN if thing.appearance is None else thing.appearance.color)
-        key = (thing.kind, *thing.sizes, *color)
+        key = (thing.kind, *thing.parameters, *color)
         if color not in materials:
             materials[color] = surface(f"color {len(materials)}", color)
             built.append(materials[color])
         if key not in meshes:
             meshes[key] = _mesh(thing, materials[color])
             built.append(meshes[key])
-        _stand(scene, thing, meshes[key], built)
+        _stand(scene, thing, meshes[key], parents, built)
 
 
-def _stand(scene: Any, thing: Primitive, mesh: Any, built: list[Any]) -> None:
+def _stand(
+    scene: Any, thing: Primitive, mesh: Any, parents: Mapping[str, Any], built: list[Any]
+) -> None:
     ob = bpy.data.objects.new(thing.name, mesh)
     built.append(ob)
     stand(ob, thing.world_from_object)
     ob["monocell"] = object_entry(thing, with_picks=False)
+    # a composite's own node stands at the world's origin, and moves no part of it
+    ob.parent = parents.get(thing.name)
     scene.collection.objects.link(ob)
+
+
+def _build_composites(scene: Any, cell: Cell, built: list[Any]) -> dict[str, Any]:
+    """An empty for each composite of solved objects; the parent of each part by its name."""
+    parents = {}
+    # parts that are only picked so far are no nodes
+    _, composites, _ = without_lost_joints(cell.objects, cell.composites)
+    for composite in composites:
+        ob = bpy.data.objects.new(composite.name, None)
+        built.append(ob)
+        ob["monocell"] = {"kind": COMPOSITE} | composite_entry(composite)
+        scene.collection.objects.link(ob)
+        parents |= dict.fromkeys(composite.parts, ob)
+    return parents
 
 
 def _mesh(thing: Primitive, material: Any) -> Any:
     mesh = bpy.data.meshes.new(thing.name)
-    fill_mesh(mesh, shape_of(thing))
+    fill_mesh(mesh, tessellated(thing))
     mesh.materials.append(material)
     return mesh
 

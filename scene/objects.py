@@ -20,9 +20,11 @@ from ..core.arrays import Array
 from ..core.document.entries import object_entry, object_from_entry
 from ..core.errors import InvalidValue
 from ..core.pose import Pose
-from ..core.primitives import Box, Cylinder, Primitive
+from ..core.primitives import Primitive, Prism
+from ..core.shape.tessellation import tessellated
 from .materials import PLAIN, colour_material, colour_of
-from .meshes import box, cylinder, fill_mesh, mesh_vertices, shape_of
+from .meshes import fill_mesh, mesh_vertices
+from .read_shape import scaled, shape_of_mesh
 from .transforms import matrix_of, pose_and_scale, stand, world_matrix
 
 ENTRY = "monocell"
@@ -32,14 +34,12 @@ PICKS = "monocell_picks"
 BLENDER_NAME = "monocell_name"
 # float32 holds seven digits; what a user changes on purpose is more than that
 SAME = 1e-6
-# a turned cylinder's facets reach 0.05 % less far
-KIND_TOLERANCE = 2e-3
 
 
 def build_object(thing: Primitive, collection: Any) -> Any:
     """Build `thing` in `collection`, or rebuild the object of its name there in place.
 
-    Scale 1, the sizes in the mesh, the origin at the centre of volume. Returns the bpy object.
+    Scale 1, the sizes in the mesh, the origin of the object's own frame. Returns the bpy object.
     """
     ob = find_object(thing.name, collection)
     if ob is None:
@@ -67,7 +67,7 @@ def is_modelled(ob: Any) -> bool:
 
 def fill_object(ob: Any, thing: Primitive) -> None:
     """Give an object the mesh, colour, place and entry of `thing`."""
-    fill_mesh(ob.data, shape_of(thing))
+    fill_mesh(ob.data, tessellated(thing))
     color = PLAIN if thing.appearance is None else thing.appearance.color
     ob.data.materials.clear()
     ob.data.materials.append(colour_material(color))
@@ -95,18 +95,20 @@ def read_object(ob: Any) -> Primitive:
     built = replace(object_from_entry(entry, ob.name), name=_name(ob))
     built = replace(built, appearance=_appearance(ob, built.appearance))
     expected = np.array(matrix_of(built.world_from_object))
-    now, centre, half = world_matrix(ob), *_mesh_box(ob)
+    now, vertices = world_matrix(ob), mesh_vertices(ob.data)
     same_place = np.abs(now - expected).max() <= SAME * max(1.0, np.abs(expected).max())
-    same_mesh = np.abs(half - built.half_extent).max() <= SAME * half.max()
-    if same_place and same_mesh and np.abs(centre).max() <= SAME * half.max():
+    same_mesh = _is_mesh_of(built, vertices)
+    if same_place and same_mesh:
         return built
-    _check_kind(ob, built, centre, half)
-    pose, scale = pose_and_scale(ob)
-    if (scale == 1.0).all() or np.abs(scale - 1).max() < SAME:
-        scale = np.ones(3)
-    moved = Pose(pose.rotation, world_matrix(ob)[:3] @ [*centre, 1.0])
-    sized = _with_extent(built, built.half_extent if same_mesh else half, scale)
-    return replace(sized, world_from_object=moved, covariance=None)
+    here = Pose.identity()
+    shape = replace(built, covariance=None, world_from_object=here)
+    if not same_mesh:
+        shape = shape_of_mesh(shape, vertices)
+    pose, scale = pose_and_scale(ob, mirror_axis=2 if isinstance(built, Prism) else 0)
+    if np.abs(scale - 1).max() >= SAME:
+        shape = scaled(shape, scale)
+    centre = now[:3] @ [*shape.world_from_object.translation, 1.0]
+    return replace(shape, world_from_object=Pose(pose.rotation, centre))
 
 
 def _name(ob: Any) -> str:
@@ -123,53 +125,8 @@ def _appearance(ob: Any, built: Appearance | None) -> Appearance | None:
     return Appearance(np.clip(color, 0.0, 1.0))
 
 
-def _mesh_box(ob: Any) -> tuple[Array, Array]:
-    """Centre and half edges of the mesh in the object's frame."""
-    vertices = mesh_vertices(ob.data)
-    if len(vertices) < 3:
-        raise InvalidValue(f"{ob.name}: its mesh is empty; undo the edit, or delete the object")
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    return (low + high) / 2, (high - low) / 2
-
-
-def _check_kind(ob: Any, built: Primitive, centre: Array, half: Array) -> None:
-    """Raise InvalidValue when the mesh is not the box or cylinder that its own extent says."""
-    if (half <= 0).any():
-        raise InvalidValue(f"{ob.name}: its mesh is flat; undo the edit, or delete the object")
-    vertices = mesh_vertices(ob.data) - centre
-    unit = np.abs(vertices) / half
-    if isinstance(built, Cylinder):
-        ideal = cylinder(1.0, 2.0).vertices * half
-        unit = np.stack([np.hypot(unit[:, 0], unit[:, 1]), unit[:, 2]], axis=1)
-    else:
-        ideal = box(2 * half).vertices
-    dent = np.abs(unit.max(axis=1) - 1.0).max() * half.max()
-    # a convex shape is known by how far it reaches in each direction
-    direction = ideal / np.linalg.norm(ideal, axis=1, keepdims=True)
-    reach = (ideal @ direction.T).max(axis=0) - (vertices @ direction.T).max(axis=0)
-    worst = max(float(dent), float(np.abs(reach).max()))
-    if worst > KIND_TOLERANCE * half.max():
-        raise InvalidValue(
-            f"{ob.name}: its mesh is {worst * 1e3:.1f} mm off a {built.kind}; "
-            "undo the edit, or build the shape from several objects"
-        )
-
-
-def _with_extent(built: Primitive, half: Array, scale: Array) -> Primitive:
-    if isinstance(built, Box):
-        size = built.size if half is built.half_extent else 2 * half
-        return replace(built, size=size * scale)
-    if isinstance(built, Cylinder):
-        return _scaled_cylinder(built, half, scale)
-    raise TypeError(f"{built.kind}: can't be read back")
-
-
-def _scaled_cylinder(built: Cylinder, half: Array, scale: Array) -> Cylinder:
-    across = half[:2] * scale[:2]
-    if abs(across[0] - across[1]) > 1e-3 * across.max():
-        raise InvalidValue(
-            f"{built.name}: stretched to {across[0]:.4f} x {across[1]:.4f} m across, so it is no "
-            "longer round; scale x and y alike"
-        )
-    radius = float(across.mean())
-    return replace(built, radius=radius, height=float(2 * half[2] * scale[2]))
+def _is_mesh_of(built: Primitive, vertices: Array) -> bool:
+    """Whether the vertices are those that `build_object` made."""
+    wanted = tessellated(built).vertices
+    reach = built.half_extent.max()
+    return wanted.shape == vertices.shape and bool(np.abs(wanted - vertices).max() <= SAME * reach)

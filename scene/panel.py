@@ -10,8 +10,9 @@ import numpy as np
 
 from ..core.arrays import Array
 from ..core.pose import Pose
+from ..core.shape.tessellation import box
 from .materials import shader_of, surface
-from .meshes import box, fill_mesh
+from .meshes import fill_mesh
 from .transforms import matrix_of
 from .work_cell import Panel
 

@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike
 
 from ..core.arrays import Array
 from ..core.pose import Pose
+from ..core.shape.tessellation import box
 from .materials import mottled, surface, wood
-from .meshes import box, fill_mesh
+from .meshes import fill_mesh
 from .transforms import matrix_of
 from .work_cell import Lab, Table, WorkCell
 

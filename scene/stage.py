@@ -22,17 +22,20 @@ from ..core.closing import Closing
 from ..core.mesh_part import MeshPart
 from ..core.pose import Pose
 from ..core.primitives import Primitive
+from ..core.shape.tessellation import Tessellation, box, cylinder, sphere, tessellated
 from .arm_meshes import import_mesh
 from .gripper import Block, grip_frame, gripper_blocks
 from .materials import PLAIN, surface
-from .meshes import Shape, box, cylinder, fill_mesh, shape_of, sphere
+from .meshes import fill_mesh
 from .panel import STUB_RADIUS, build_panel, remove_print, stub_centre
 from .rendering import render_linear, render_picture, render_window
 from .room import build_room
-from .textures import is_textured, paint
+from .textures import is_textured, painted_mesh
 from .transforms import matrix_of
 from .work_cell import Ball, Panel, WorkCell
 
+# the outline is within 0.01 px of a true sphere's up to a radius of 460 px in the picture
+BALL_SEGMENTS = 512
 SAMPLES = 4
 BOUNCES = 1
 
@@ -47,7 +50,7 @@ class Stage(Closing):
         self._ball: Any = None
         self._gripper: list[Any] = []
         self._panel: list[Any] = []
-        self._textures: list[Any] = []
+        self._images: list[Any] = []
         # what did not move is not sent to Cycles again
         self.scene.render.use_persistent_data = True
         build_room(self.scene, cell)
@@ -114,15 +117,19 @@ class Stage(Closing):
         obs, world = list(self.scene.collection.all_objects), self.scene.world
         bpy.data.scenes.remove(self.scene)
         _remove(obs)
-        bpy.data.batch_remove(self._textures)
+        bpy.data.batch_remove(self._images)
         bpy.data.worlds.remove(world)
 
     def _add_object(self, thing: Primitive) -> None:
-        color = PLAIN if thing.appearance is None else tuple(thing.appearance.color)
-        material = surface(thing.name, color, roughness=0.38)
-        ob = self._add(thing.name, shape_of(thing), material)
         if is_textured(thing):
-            self._textures += paint(ob.data, thing, Path())
+            mesh, made = painted_mesh(thing, self.cell.folder)
+            # the rest goes with its object
+            self._images += [each for each in made if isinstance(each, bpy.types.Image)]
+            ob = self._link(thing.name, mesh)
+        else:
+            color = PLAIN if thing.appearance is None else tuple(thing.appearance.color)
+            material = surface(thing.name, color, roughness=0.38)
+            ob = self._add(thing.name, tessellated(thing), material)
         ob.matrix_world = matrix_of(thing.world_from_object)
 
     def _show_ball(self, ball: Ball | None) -> None:
@@ -150,7 +157,7 @@ class Stage(Closing):
 
     def _add_ball(self, ball: Ball) -> None:
         material = surface("ball", ball.color.tolist(), roughness=ball.roughness)
-        self._ball = self._add("ball", sphere(ball.radius), material)
+        self._ball = self._add("ball", sphere(ball.radius, BALL_SEGMENTS), material)
         self._ball["radius"] = ball.radius
 
     def _add_block(self, block: Block) -> Any:
@@ -162,10 +169,13 @@ class Stage(Closing):
         )
         return self._add(block.name, shape, material)
 
-    def _add(self, name: str, shape: Shape, material: Any) -> Any:
+    def _add(self, name: str, shape: Tessellation, material: Any) -> Any:
         mesh = bpy.data.meshes.new(name)
         fill_mesh(mesh, shape)
         mesh.materials.append(material)
+        return self._link(name, mesh)
+
+    def _link(self, name: str, mesh: Any) -> Any:
         ob = bpy.data.objects.new(name, mesh)
         self.scene.collection.objects.link(ob)
         return ob

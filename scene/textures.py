@@ -20,8 +20,9 @@ from ..core.errors import PictureError
 from ..core.primitives import Primitive
 from ..core.shape.charts import chart_of
 from ..core.shape.intervals import face_names
+from ..core.shape.tessellation import tessellated
 from .materials import PLAIN, shader_of, surface
-from .meshes import fill_mesh, mesh_vertices, shape_of
+from .meshes import fill_mesh, mesh_vertices
 
 UV_LAYER = "monocell"
 
@@ -34,7 +35,7 @@ def is_textured(thing: Primitive) -> bool:
 def painted_mesh(thing: Primitive, folder: Path, *, glow: bool = False) -> tuple[Any, list[Any]]:
     """A new mesh of the solid with its colour and textures; also all that was made, it included."""
     mesh = bpy.data.meshes.new(thing.name)
-    fill_mesh(mesh, shape_of(thing))
+    fill_mesh(mesh, tessellated(thing))
     try:
         return mesh, [mesh, *paint(mesh, thing, folder, glow=glow)]
     except PictureError:

@@ -38,10 +38,11 @@ def world_matrix(ob: Any) -> Array:
     return np.array(ob.matrix_basis if free else ob.matrix_world, dtype=float)
 
 
-def pose_and_scale(ob: Any) -> tuple[Pose, Array]:
+def pose_and_scale(ob: Any, mirror_axis: int = 2) -> tuple[Pose, Array]:
     """An object's pose and its scale (3,) along its own axes, always positive.
 
-    A mirrored object has its z axis turned round: monocell's shapes are their own mirror images.
+    A mirrored object has its axis `mirror_axis` turned round, along which its shape has to be its
+    own mirror image: z (2) of all but cones, x (0) of all but prisms.
     Raises InvalidValue for a shear, or a scale of zero.
     """
     matrix = world_matrix(ob)
@@ -57,5 +58,5 @@ def pose_and_scale(ob: Any) -> tuple[Pose, Array]:
             "clear its parent or apply the parent's scale"
         )
     if np.linalg.det(axes) < 0:
-        axes[:, 2] *= -1
+        axes[:, mirror_axis] *= -1
     return Pose(axes, matrix[:3, 3]), scale

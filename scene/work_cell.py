@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
@@ -106,6 +107,7 @@ class WorkCell:
     """A robot on a table in a lab. World: metres, z up, the robot's base at the origin.
 
     `parts` are the meshes of the arm in their poses. `light` scales the brightness of the room.
+    Textures of the objects are named from `folder`.
     """
 
     camera: Camera
@@ -115,3 +117,4 @@ class WorkCell:
     table: Table = field(default_factory=Table)
     light: float = 1.0
     lab: Lab = field(default_factory=Lab)
+    folder: Path = Path()

@@ -1,29 +1,41 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The verbs, one a file."""
+"""The verbs, one a file: `add_box.py` holds the operator `monocell.add_box`."""
+
+from importlib import import_module
+
+# in the order of the work
+VERBS = (
+    "open_sample",
+    "open_cell",
+    "open_picture",
+    "drop_picture",
+    "look_through",
+    "show_picture",
+    "add_pictures",
+    "paste_sightings",
+    "read_sightings",
+    "add_sighting",
+    "add_point",
+    "remove_sighting",
+    "drag_window",
+    "clear_window",
+    "find_all",
+    "calibrate",
+    "cancel_work",
+    "add_box",
+    "add_cylinder",
+    "solve_again",
+    "export_gltf",
+    "save_cell",
+)
 
 
 def classes():
-    """Every operator, in the order of the work."""
-    from .add_box import AddBox
-    from .add_cylinder import AddCylinder
-    from .calibrate import Calibrate
-    from .export_gltf import ExportCell
-    from .look_through import LookThrough
-    from .open_cell import OpenCell
-    from .open_picture import OpenPicture
-    from .save_cell import SaveCell
-    from .show_picture import ShowPicture
-    from .solve_again import SolveAgain
+    """Every operator, each found in its file by its name."""
+    return tuple(_operator(verb) for verb in VERBS)
 
-    return (
-        OpenCell,
-        OpenPicture,
-        LookThrough,
-        ShowPicture,
-        Calibrate,
-        AddBox,
-        AddCylinder,
-        SolveAgain,
-        ExportCell,
-        SaveCell,
-    )
+
+def _operator(verb):
+    held = vars(import_module(f".{verb}", __package__)).values()
+    name = f"monocell.{verb}"
+    return next(one for one in held if getattr(one, "bl_idname", "") == name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Open a picture with its camera file: two paths go in, the scene of a new cell comes out."""
+"""Start a cell from a picture: its file and its camera go in, a new scene comes out."""
 
 from pathlib import Path
 from typing import ClassVar
@@ -7,45 +7,54 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
+from ..camera_inputs import stated_camera
 from ..cell_scene import look_through, open_scene
 from ..refusals import refuses
 
 
 class OpenPicture(bpy.types.Operator):
-    """Start a new cell from a picture and the file of the camera that took it"""
+    """Start a new cell from a picture and the camera that took it"""
 
     bl_idname = "monocell.open_picture"
-    bl_label = "Open Picture with Camera File"
+    bl_label = "Open Picture"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
     picture: StringProperty(name="Picture", subtype="FILE_PATH", options={"SKIP_SAVE"})
-    camera: StringProperty(name="Camera file", subtype="FILE_PATH", options={"SKIP_SAVE"})
+    camera: StringProperty(
+        name="Camera file",
+        description="Empty: the camera that is stated in the panel",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
+    )
 
     @classmethod
     def description(cls, context, properties):
         """What is missing, where something is."""
-        missing = [
-            n
-            for n, p in (("picture", properties.picture), ("camera file", properties.camera))
-            if not p
-        ]
-        return f"Choose a {' and a '.join(missing)} above first" if missing else cls.__doc__
+        return cls.__doc__ if properties.picture else "Choose a picture above first"
 
     @refuses
     def execute(self, context):
         """Read both, build, and look through the camera."""
-        from ...core.cell import Cell
         from ...core.document.camera_file import read_camera
-        from ...core.errors import DocumentError
+        from ...core.errors import PictureError
 
-        if not self.picture or not self.camera:
-            raise DocumentError("a picture and its camera file are needed: choose both first")
+        if not self.picture:
+            raise PictureError("no picture chosen: a cell starts from one")
         file = Path(bpy.path.abspath(self.picture)).resolve()
-        camera = read_camera(bpy.path.abspath(self.camera))
-        cell = Cell(camera, picture=file.name, folder=file.parent)
-        scene = open_scene(context, cell, file.stem)
-        look_through(context)
-        self.report(
-            {"INFO"}, f"{scene.name}: {camera.intrinsics.width} x {camera.intrinsics.height} px"
-        )
-        return {"FINISHED"}
+        if self.camera:
+            camera = read_camera(bpy.path.abspath(self.camera))
+        else:
+            camera = stated_camera(context.scene.monocell_inputs, file)
+        return open_picture(self, context, file, camera)
+
+
+def open_picture(operator, context, file, camera):
+    """Open a cell of one picture file with its camera, and look through it."""
+    from ...core.cell import Cell
+
+    cell = Cell(camera, picture=file.name, folder=file.parent)
+    scene = open_scene(context, cell, file.stem)
+    look_through(context)
+    inner = camera.intrinsics
+    operator.report({"INFO"}, f"{scene.name}: {inner.width} x {inner.height} px")
+    return {"FINISHED"}

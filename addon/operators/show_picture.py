@@ -6,8 +6,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
-from ..cell_scene import show_picture
-from ..document import bare_cell
+from ..cell_scene import show_named_picture
 from ..polls import NeedsCell
 from ..refusals import refuses
 
@@ -24,9 +23,5 @@ class ShowPicture(NeedsCell, bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Read the picture, then undistort and show it."""
-        from ...core.picture.pictures import read_picture
-
-        cell = bare_cell(context.scene)
-        pixels = read_picture(cell.path_of(self.picture), cell.camera.intrinsics)
-        show_picture(context.scene, self.picture, pixels)
+        show_named_picture(context.scene, self.picture)
         return {"FINISHED"}

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from ..ball.outline import SphereOutline
@@ -31,21 +31,27 @@ __all__ = [
 
 
 def calibrate_cell(
-    cell: Cell, method: Method = "joint", refine: Sequence[Refinable] = ()
+    cell: Cell,
+    method: Method = "joint",
+    refine: Sequence[Refinable] = (),
+    watch: Callable[[str], None] | None = None,
 ) -> tuple[Cell, Calibration]:
     """Find the balls in the cell's pictures and the camera's pose from them and from its points.
 
     A ball that is not found where it was looked for, or that does not fit the others, is looked for
-    again where the others put it. With `refine` the cell gets its focal lengths or radius too.
+    again where the others put it. Sightings that are not in use are left out; the calibration's
+    `sightings` are the others, in order. With `refine` the cell gets its focal lengths or radius
+    too. `watch` is told each picture's name as it is looked at; what it raises ends the work.
 
     Raises TooFewSightings and DegeneratePositions for positions that can't hold a pose,
     PictureError, SphereNotFound when fewer balls are found than make a pose, NotConverged when too
     few fit together, AmbiguousPose when several poses fit, NotObservable for what can't be refined.
     """
-    problem = Problem.of_cell(cell, method, tuple(refine))
-    shelf = PictureShelf(cell)
-    shelf.check_there([s.picture for s in cell.sightings if isinstance(s, SphereSighting)])
-    calibration = _calibrated(cell, problem, shelf)
+    used = cell.in_use()
+    problem = Problem.of_cell(used, method, tuple(refine))
+    shelf = PictureShelf(used, watch)
+    shelf.check_there([s.picture for s in used.sightings if isinstance(s, SphereSighting)])
+    calibration = _calibrated(used, problem, shelf)
     return _with_result(cell, calibration), calibration
 
 

@@ -86,11 +86,20 @@ def _from_json(file: Path) -> Camera:
         return camera_from_opencv(file)
     if isinstance(document, dict) and "monocell" in document:
         return camera_from_entry(document.get("camera"))
+    if isinstance(document, dict) and "board" in document and "camera" in document:
+        return _of_lens_report(document)
     if is_fspy(document):
         return camera_from_fspy(document)
     if is_nerfstudio(document):
         return camera_from_nerfstudio(document)
     return camera_from_entry(document, "")
+
+
+def _of_lens_report(document: dict[str, Any]) -> Camera:
+    """The camera in what `monocell lens --json` told, unless it told not to believe it."""
+    if document.get("verdict") == "failed":
+        raise DocumentError("verdict: this calibration of the lens failed; take better pictures")
+    return camera_from_entry(document["camera"])
 
 
 def _from_text(file: Path, text: str) -> Camera:

@@ -13,23 +13,30 @@ from ..errors import DocumentError
 def parse_json(file: Path) -> Any:
     """Parsed JSON. Raises DocumentError naming the file, and line and column where it breaks."""
     try:
-        return json.loads(file.read_text(encoding="utf-8-sig"), object_pairs_hook=_once_each)
+        text = file.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         raise DocumentError(f"{file}: there is no such file") from None
     except OSError as error:
         raise DocumentError(f"{file}: can't be read ({error.strerror})") from None
     except UnicodeDecodeError:
         raise DocumentError(f"{file}: is not a text file, so it is no JSON document") from None
+    return parsed_json(text, str(file))
+
+
+def parsed_json(text: str, name: str) -> Any:
+    """Parsed JSON. Raises DocumentError with `name`, and line and column where it breaks."""
+    try:
+        return json.loads(text, object_pairs_hook=_once_each)
     except json.JSONDecodeError as error:
         at = f"line {error.lineno}, column {error.colno}"
-        raise DocumentError(f"{file}: is not JSON ({error.msg} at {at})") from None
+        raise DocumentError(f"{name}: is not JSON ({error.msg} at {at})") from None
     except RecursionError:
-        raise DocumentError(f"{file}: is nested too deeply to be a cell document") from None
+        raise DocumentError(f"{name}: is nested too deeply to be a cell document") from None
     except DocumentError as error:
-        raise DocumentError(f"{file}: {error}") from None
+        raise DocumentError(f"{name}: {error}") from None
     except ValueError as error:
         # a whole number of thousands of digits
-        raise DocumentError(f"{file}: is not JSON that can be read ({error})") from None
+        raise DocumentError(f"{name}: is not JSON that can be read ({error})") from None
 
 
 def dumped(document: Any) -> str:

@@ -11,9 +11,9 @@ from ..mount import Mount
 from ..pose import Pose
 from ..sighting import CLICK_SIGMA_PIXELS, PointSighting, Sighting, SphereSighting
 from .entries import Entry, named, pose_entry, pose_from_entry
-from .fields import Fields, keyed
+from .fields import Fields, keyed, shown
 
-PLACE = ("center", "world_from_flange", "target")
+PLACE = ("center", "world_from_flange", "target", "use")
 
 
 def sighting_entry(sighting: Sighting) -> Entry:
@@ -25,6 +25,8 @@ def sighting_entry(sighting: Sighting) -> Entry:
         entry["world_from_flange"] = pose_entry(sighting.world_from_flange)
     if sighting.target:
         entry["target"] = sighting.target
+    if not sighting.use:
+        entry["use"] = False
     if isinstance(sighting, PointSighting):
         entry |= {"pixel": sighting.pixel.tolist(), "sigma_pixels": sighting.sigma_pixels}
         return entry
@@ -47,6 +49,7 @@ def sighting_from_entry(entry: Any, where: str) -> Sighting:
                 sigma,
                 _flange(fields),
                 _target(fields),
+                _use(fields),
             )
     fields = keyed(entry, where, ("picture", "radius"), (*PLACE, "window"))
     window = fields.vector("window", 4).tolist() if fields.has("window") else None
@@ -58,6 +61,7 @@ def sighting_from_entry(entry: Any, where: str) -> Sighting:
             None if window is None else (window[0], window[1], window[2], window[3]),
             _flange(fields),
             _target(fields),
+            _use(fields),
         )
 
 
@@ -104,6 +108,14 @@ def _flange(fields: Fields) -> Pose | None:
     if not fields.has("world_from_flange"):
         return None
     return pose_from_entry(fields.raw("world_from_flange"), fields.path("world_from_flange"))
+
+
+def _use(fields: Fields) -> bool:
+    """A sighting takes part unless it is switched off."""
+    value = fields.raw("use")
+    if value is not None and not isinstance(value, bool):
+        raise DocumentError(f"{fields.path('use')}: expected true or false, got {shown(value)}")
+    return value is not False
 
 
 def _target(fields: Fields) -> str:

@@ -25,6 +25,8 @@ from .sure_pixels import SIGMAS, Sight, edge_sigma_pixels
 SMALLEST_ANGLE = math.radians(10)
 # a pixel whose neighbours all show the face shows nothing else; blur reaches as far again
 RIM_PIXELS = 1.5
+# what the model says is the face is taken from the picture up to here, though not called seen
+LIKELY_RIM_PIXELS = 1.0
 # made-up texels this near to a seen one are its continuation
 BESIDE_PIXELS = 3.0
 PADDING_TEXELS = 4
@@ -81,10 +83,13 @@ def face_picture(
         return NotSeen(face, f"only {100 * share:.1f} % of it is seen")
     shape = rows, columns
     sampled = _sampled(light, looked.pixels.reshape(*shape, 2))
+    likely = looked.seen | (
+        looked.steep & _at(sight.sure(index, LIKELY_RIM_PIXELS, number), looked.pixels)
+    )
     shown = (sight.seen.owner == index) & (sight.seen.face == number)
     beside = _at(_grown(shown), looked.pixels) & looked.facing
     filled = _filled(
-        sampled, looked.seen.reshape(shape), beside.reshape(shape), color[::-1].astype(np.float32)
+        sampled, likely.reshape(shape), beside.reshape(shape), color[::-1].astype(np.float32)
     )
     alpha = np.where(looked.seen, 255, 0).astype(np.uint8).reshape(*shape, 1)
     return FacePicture(face, np.concatenate([eight_bit_srgb(filled), alpha], axis=2), share)

@@ -66,7 +66,8 @@ def choose(
     found.sort(key=lambda c: c.chi_squared)
     scale = found[0].fitted.noise_scale
     good = [c for c in found if c.chi_squared <= found[0].chi_squared + WITHIN_NOISE * scale**2]
-    good.sort(key=lambda c: len(c.hidden))
+    # between perfect fits the larger is taken: its top picks are on the side facing the camera
+    good.sort(key=lambda c: (len(c.hidden), round(c.chi_squared, 6), -_volume(c)))
     best = good[0]
     rivals = [c for c in good[1:] if len(c.hidden) == len(best.hidden) and not _same(c, best)]
     thing = best.fitted.thing
@@ -89,6 +90,10 @@ def _fitted(
     )
     fitted = fit.objects[thing.name]
     return _Candidate(fitted, fit.chi_squared, hidden_picks(fitted.thing, camera, plan))
+
+
+def _volume(one: _Candidate) -> float:
+    return float(np.prod(2 * one.fitted.thing.half_extent))
 
 
 def _same(one: _Candidate, other: _Candidate) -> bool:

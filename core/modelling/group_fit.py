@@ -24,8 +24,11 @@ from .holding import Hold, References
 from .observed import Observe, Observed
 from .solid import Solid
 
-# a relation off by a tenth of a millimetre (or milliradian) weighs as much as one residual
+# a relation off by a tenth of a millimetre (or milliradian) is still near to where it was kept
 HELD_SIGMA = 1e-4
+# what a metre (or radian) off a relation costs: more than any picks could gain by it, and in
+# proportion, because a square would let the picks buy the last micrometres
+HELD_COST = 1e6
 SETTLED_HOLD = 1e-9
 LARGEST_DAMPING, SMALLEST_DAMPING = 1e10, 1e-12
 
@@ -123,8 +126,8 @@ def fit_groups(problem: Problem, start: Scene, *, joint: bool, steps: int = 60) 
 
 
 def _merit(fitted: Fitted) -> float:
-    held = sum(float(s.held @ s.held) for s in fitted.systems)
-    return fitted.cost + held / HELD_SIGMA**2
+    held = sum(float(np.abs(s.held).sum()) for s in fitted.systems)
+    return fitted.cost + HELD_COST * held
 
 
 def _evaluated(problem: Problem, scene: Scene) -> Fitted | None:

@@ -57,11 +57,15 @@ class FittedObject:
 
 @dataclass(frozen=True, eq=False)
 class ModelFit:
-    """All solved objects by name, the camera (moved only by a joint fit), and the fits' cost."""
+    """All solved objects by name, the camera (moved only by a joint fit), and the fits' cost.
+
+    `pull_sigmas` is how far a joint fit moves camera and references at most, in their own sigmas.
+    """
 
     objects: Mapping[str, FittedObject]
     camera: Camera
     chi_squared: float
+    pull_sigmas: float = 0.0
 
 
 def fit_model(
@@ -163,7 +167,8 @@ class _Fitting:
             camera = replace(
                 camera, covariance=spread[CAMERA] @ noise_covariance @ spread[CAMERA].T
             )
-        return ModelFit({name: done[name] for name in self.wanted}, camera, fitted.cost)
+        pull = float(np.abs(fitted.scene.noise).max(initial=0.0))
+        return ModelFit({name: done[name] for name in self.wanted}, camera, fitted.cost, pull)
 
     def _solved(
         self,

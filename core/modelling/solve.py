@@ -25,6 +25,8 @@ from .pick_equations import pick_observer
 LEAST_SIGMA, MOST_SIGMA = 1e-9, 1e4
 # references made from objects move as these are solved together: so often they are made anew
 JOINT_ROUNDS = 3
+# what is told as 1 sigma may be three of them off, and hardly more
+MOST_PULL = 3.5
 
 
 def solve_sketch(
@@ -50,18 +52,28 @@ def solve_sketch(
     return modelled(chosen.fitted, chosen.plan, chosen.warnings)
 
 
-def model_cell(
-    cell: Cell, pick_sigma_pixels: float = 1.0, *, joint: bool = False
-) -> tuple[Cell, tuple[Modelled, ...]]:
+@dataclass(frozen=True, eq=False)
+class Modelling:
+    """A cell with its objects solved, what is told of each, and doubts that are nobody's own.
+
+    `results` are of all that was solved, in the order of the cell's objects.
+    """
+
+    cell: Cell
+    results: tuple[Modelled, ...]
+    warnings: tuple[str, ...]
+
+
+def model(cell: Cell, pick_sigma_pixels: float = 1.0, *, joint: bool = False) -> Modelling:
     """Solve every sketch of a cell, and again every object that has picks.
 
     Each is solved after what it stands on or is held by; references made from objects follow them.
     `joint` then solves all of them once more as one problem: picks, relations, known sizes and the
-    errors of camera and references, so that what is known of one improves the others.
+    errors of camera and references, so that what is known of one improves the others. The cell
+    keeps its calibrated camera: otherwise a second run would count the same picks twice.
 
-    Returns the cell with the objects first, in their order, then the solved sketches, and the
-    results of all that was solved in the same order. Objects without picks stay untouched. After a
-    joint solution the cell's camera is the one that fits all objects best, with its covariance.
+    The objects come first, in their order, then the solved sketches. Objects without picks stay
+    untouched.
 
     Raises what `solve_sketch` raises; the cell is then as it was.
     """
@@ -69,6 +81,14 @@ def model_cell(
     while work.waiting:
         work.solve_level()
     return work.finished(joint)
+
+
+def model_cell(
+    cell: Cell, pick_sigma_pixels: float = 1.0, *, joint: bool = False
+) -> tuple[Cell, tuple[Modelled, ...]]:
+    """`model` for those who want the cell and the results alone."""
+    modelling = model(cell, pick_sigma_pixels, joint=joint)
+    return modelling.cell, modelling.results
 
 
 @dataclass(eq=False)
@@ -80,6 +100,7 @@ class _Work:
     order: tuple[str, ...]
     waiting: dict[str, Sketch]
     chosen: dict[str, Chosen] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
 
     @staticmethod
     def of(cell: Cell, sigma: float) -> _Work:
@@ -112,7 +133,7 @@ class _Work:
             sketches=tuple(self.waiting.values()),
         )
 
-    def finished(self, joint: bool) -> tuple[Cell, tuple[Modelled, ...]]:
+    def finished(self, joint: bool) -> Modelling:
         """All objects fitted with what they share, in the order of the document."""
         fit = self._fit(joint=False)
         for _ in range(JOINT_ROUNDS if joint else 0):
@@ -121,9 +142,6 @@ class _Work:
         self._take(fit)
         objects = {thing.name: thing for thing in self.cell.objects}
         ordered = tuple(objects[name] for name in self.order)
-        cell = replace(self.cell, objects=ordered, sketches=())
-        if joint:
-            cell = cell.with_camera(fit.camera) if cell.mount is None else cell
         results = [
             modelled(
                 replace(fit.objects[name], thing=objects[name]),
@@ -133,14 +151,15 @@ class _Work:
             for name in self.order
             if name in self.chosen
         ]
-        return cell, tuple(results)
+        cell = replace(self.cell, objects=ordered, sketches=())
+        return Modelling(cell, tuple(results), (*self.warnings, *_pulled(fit)))
 
     def references(self) -> dict[str, Reference]:
         """What stands, by name; a face of an object is taken from the object itself."""
         return {reference.name: reference for reference in self.cell.placed_references}
 
     def _fit(self, *, joint: bool) -> ModelFit:
-        self.cell, _ = resolve_references(self.cell, self.sigma)
+        self.cell, self.warnings = resolve_references(self.cell, self.sigma)
         plans = {name: chosen.plan for name, chosen in self.chosen.items()}
         things = [_by_feature(thing, self.cell) for thing in self.cell.objects]
         return fit_model(
@@ -176,6 +195,16 @@ class _Work:
             if self._stands(replace(sketch, on=None, relations=(relation,)), references)
         )
         return replace(sketch, on=None, relations=kept)
+
+
+def _pulled(fit: ModelFit) -> list[str]:
+    """A word when the objects want camera or references elsewhere than these say they can be."""
+    if fit.pull_sigmas <= MOST_PULL:
+        return []
+    return [
+        f"the objects together pull camera and references by {fit.pull_sigmas:.1f} of their own "
+        "sigmas: a known size, a relation or the calibration is wrong"
+    ]
 
 
 def _by_feature(thing: Primitive, cell: Cell) -> Primitive:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Callable
 
 from ..cell import Cell
 from .pictures import Picture, read_picture
@@ -13,14 +14,19 @@ KEPT = 2
 
 
 class PictureShelf:
-    """The pictures of one cell. Reading raises PictureError, as `read_picture` does."""
+    """The pictures of one cell. Reading raises PictureError, as `read_picture` does.
 
-    def __init__(self, cell: Cell) -> None:
-        self._cell = cell
+    `watch` is told the name of each picture that is looked at, for a sign of progress.
+    """
+
+    def __init__(self, cell: Cell, watch: Callable[[str], None] | None = None) -> None:
+        self._cell, self._watch = cell, watch
         self._kept: OrderedDict[str, Picture] = OrderedDict()
 
     def read(self, name: str) -> Picture:
         """The pixels of a picture of the cell, (H, W, 3)."""
+        if self._watch is not None:
+            self._watch(name)
         if name not in self._kept:
             while len(self._kept) >= KEPT:
                 self._kept.popitem(last=False)

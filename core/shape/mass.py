@@ -7,6 +7,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..primitives import Box, Cone, Cylinder, Primitive, Prism, Sphere, Tube
+from .polygons import polygon_area
 
 
 def volume(thing: Primitive) -> float:
@@ -23,7 +24,7 @@ def volume(thing: Primitive) -> float:
         low, high = thing.radius, thing.top_radius
         return float(np.pi / 3 * thing.height * (low**2 + low * high + high**2))
     if isinstance(thing, Prism):
-        return float(_fans(thing.polygon).sum() / 2 * thing.height)
+        return polygon_area(thing.polygon) * thing.height
     raise TypeError(f"{thing.kind}: its volume is not known")
 
 

@@ -38,6 +38,11 @@ def crossing_sides(polygon: Array) -> tuple[int, int] | None:
     return int(i), int(j)
 
 
+def polygon_area(polygon: Array) -> float:
+    """The area, negative for a clockwise polygon."""
+    return float(_cross(polygon, np.roll(polygon, -1, axis=0)).sum() / 2)
+
+
 def is_convex(polygon: Array) -> bool:
     """Whether no corner of an anticlockwise polygon turns clockwise."""
     along = np.roll(polygon, -1, axis=0) - polygon
@@ -81,23 +86,6 @@ def convex_pieces(polygon: Array) -> list[list[int]]:
             if joined:
                 break
     return pieces
-
-
-def centre_jacobian(polygon: Array) -> Array:
-    """How the centre of area moves with the corners: (2, 2 N), columns x0, y0, x1, ..."""
-    after, before = np.roll(polygon, -1, axis=0), np.roll(polygon, 1, axis=0)
-    cross = _cross(polygon, after)
-    double_area = cross.sum()
-    centre = ((polygon + after) * cross[:, None]).sum(axis=0) / (3 * double_area)
-    by_area = np.stack([after[:, 1] - before[:, 1], before[:, 0] - after[:, 0]], axis=1)
-    # the centre is a quotient, its numerator the sum of (corner + next) * cross
-    own = (cross + np.roll(cross, 1))[:, None, None] * np.eye(2)
-    with_next = (polygon + after)[:, :, None] * np.stack([after[:, 1], -after[:, 0]], 1)[:, None]
-    with_last = (polygon + before)[:, :, None] * np.stack([-before[:, 1], before[:, 0]], 1)[:, None]
-    numerator = own + with_next + with_last
-    whole = numerator / (3 * double_area) - centre[:, None] * by_area[:, None, :] / double_area
-    jacobian: Array = whole.transpose(1, 0, 2).reshape(2, -1)
-    return jacobian
 
 
 def _best_ear(polygon: Array) -> int:

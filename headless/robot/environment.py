@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.arrays import Array, frozen
+from ...core.composite import Composite
 from ...core.errors import InvalidValue
 from ...core.primitives import Primitive
 
@@ -39,12 +40,13 @@ class WorldMesh:
 
 @dataclass(frozen=True, eq=False)
 class Environment:
-    """Exact `objects`, `meshes` of nodes without exact shape, and the scene's own `extras`.
+    """Exact `objects`, their `composites`, `meshes` of nodes without exact shape, and `extras`.
 
-    `extras` is what the exporter wrote beside the nodes, the camera among it, unchecked.
+    `extras` is what the exporter wrote into the scene, the camera among it, unchecked.
     """
 
     objects: tuple[Primitive, ...]
     meshes: tuple[WorldMesh, ...] = ()
     extras: Mapping[str, Any] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    composites: tuple[Composite, ...] = ()

@@ -11,15 +11,18 @@ import copy
 import io
 import json
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.document.entries import object_from_entry
-from ...core.errors import DocumentError, MissingPackage
+from ...core.bodies import rigid_bodies
+from ...core.composite import Composite
+from ...core.document.entries import composite_from_entry, object_from_entry
+from ...core.errors import DocumentError, InvalidValue, MissingPackage
+from ...core.orphans import without_lost_joints
 from ...core.primitives import Primitive
 from ...core.rotation import rotation_from_vector
 from .environment import Environment, WorldMesh
@@ -34,32 +37,50 @@ MOVED_METRES, MOVED_RADIANS = 1e-4, 1e-3
 def read_environment(path: str | Path) -> Environment:
     """The objects and meshes of a `.glb` or `.gltf`, in z-up world coordinates, metres.
 
-    A node with `extras.monocell` becomes its Box or Cylinder; its mesh is not looked at. A node
+    A node with `extras.monocell` becomes its solid or composite; its mesh is not looked at. A node
     with a mesh and no such extras becomes a WorldMesh. A node that stands elsewhere than its extras
-    say is taken where the extras say, and warned of.
+    say is taken where the extras say, and warned of, as is a joint to a node that is gone.
 
     Raises DocumentError with the path of the file and what is wrong.
     """
     file = Path(path)
     document, binary = _document(file)
-    objects, warnings = [], []
+    objects, composites, warnings = [], [], []
     for i, node, matrix in _placed_nodes(document, file):
-        entry = _extras(node).get(KEY)
-        if entry is not None and not _is_camera(entry):
-            thing = object_from_entry(entry, f"{file}: nodes[{i}].extras.{KEY}")
+        entry, where = _extras(node).get(KEY), f"{file}: nodes[{i}].extras.{KEY}"
+        if _is(entry, "composite"):
+            composites.append(composite_from_entry(_without_kind(entry), where))
+        elif entry is not None and not _is(entry, "camera"):
+            thing = object_from_entry(entry, where)
             objects.append(thing)
             warnings += _moved(thing, matrix)
+    kept, groups, lost = without_lost_joints(objects, composites)
+    _check_bodies(kept, groups, file)
     return Environment(
-        tuple(objects),
+        kept,
         tuple(_meshes(document, binary, file)),
         _scene_extras(document, file),
-        tuple(warnings),
+        (*warnings, *lost),
+        groups,
     )
 
 
-def _is_camera(entry: Any) -> bool:
-    """The camera's node is marked as ours, too; what it is stands in the scene's extras."""
-    return isinstance(entry, dict) and entry.get("kind") == "camera"
+def _is(entry: Any, kind: str) -> bool:
+    """Nodes of cameras and composites are marked as ours, too."""
+    return isinstance(entry, dict) and entry.get("kind") == kind
+
+
+def _without_kind(entry: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in entry.items() if key != "kind"}
+
+
+def _check_bodies(
+    objects: Sequence[Primitive], composites: Sequence[Composite], file: Path
+) -> None:
+    try:
+        rigid_bodies(objects, composites)
+    except InvalidValue as error:
+        raise DocumentError(f"{file}: {error}") from None
 
 
 def _document(file: Path) -> tuple[dict[str, Any], bytes]:

@@ -3,7 +3,7 @@
 
 Distances are Bullet's, between exact obstacles and the convex hulls of the arm's links, which
 Bullet makes 1 mm larger: what is stated is never more than there is (but for 0.02 mm at the rim of
-a cylinder).
+a cylinder). The pieces that cones, tubes and prisms are made of are a trace too large, too.
 """
 
 from __future__ import annotations
@@ -17,12 +17,15 @@ from numpy.typing import ArrayLike
 
 from ...core.arrays import Array
 from ...core.closing import Closing
+from ...core.composite import Composite
 from ...core.errors import InvalidValue
+from ...core.pose import Pose
 from ...core.primitives import Box, Primitive
 from .arm import Arm
 from .bullet import pybullet
 from .environment import WorldMesh
 from .held import HeldBodies
+from .multibodies import BASE, add_objects, world_from_object
 from .shapes import add_obstacle
 
 # farther than any arm reaches: "no limit" for a distance query
@@ -60,12 +63,14 @@ class Part:
 
 
 class RobotScene(Closing):
-    """The arm with static obstacles; a context manager that takes the obstacles out again.
+    """The arm among its obstacles; a context manager that takes the obstacles out again.
 
-    `objects` become exact shapes, `meshes` their convex hulls. Links that no joint moves are held
-    against nothing: no path can bring them into a collision. All distances are metres.
+    `objects` become exact shapes, `meshes` their convex hulls. Objects that move have their mass
+    and joints (`multibodies.py`), and stay where they are unless someone steps the world; what had
+    to be assumed of them is in `warnings`. Links of the arm that no joint moves are held against
+    nothing: no path can bring them into a collision. All distances are metres.
 
-    Raises InvalidValue when two things share a name.
+    Raises InvalidValue when two things share a name, and for joints or masses that can't be.
     """
 
     def __init__(
@@ -75,6 +80,7 @@ class RobotScene(Closing):
         *,
         meshes: Sequence[WorldMesh] = (),
         table: Box | None = None,
+        composites: Sequence[Composite] = (),
     ) -> None:
         self.arm, self.objects, self.meshes, self.table = arm, tuple(objects), tuple(meshes), table
         things: list[Primitive | WorldMesh] = [
@@ -87,7 +93,13 @@ class RobotScene(Closing):
             twin = next(name for name in self.names if self.names.count(name) > 1)
             raise InvalidValue(f"two things of the scene are called {twin!r}; rename one")
         self._p: Any = pybullet()
-        self._bodies = [add_obstacle(arm.client, thing) for thing in things]
+        self._placed, self.warnings = add_objects(arm.client, self.objects, composites)
+        standing = [add_obstacle(arm.client, thing) for thing in things[len(self.objects) :]]
+        self._at = [(at.body, at.link) for at in self._placed]
+        self._at += [(body, BASE) for body in standing]
+        self._on_body: dict[int, dict[int, int]] = {}
+        for thing, (body, link) in enumerate(self._at):
+            self._on_body.setdefault(body, {})[link] = thing
         self._held = HeldBodies(arm)
         self.parts = tuple(self._all_parts())
         self._pairs = self._pairs_that_can_part()
@@ -97,14 +109,24 @@ class RobotScene(Closing):
 
     def close(self) -> None:
         """Take the obstacles and the ball out of the arm's world."""
-        for body in (*self._bodies, *self._held.bodies):
+        for body in (*self._on_body, *self._held.bodies):
             self._p.removeBody(body, physicsClientId=self.arm.client)
-        self._bodies = []
+        self._at, self._on_body = [], {}
 
     @property
     def object_names(self) -> tuple[str, ...]:
         """The names of the exact objects: without meshes and table."""
         return tuple(thing.name for thing in self.objects)
+
+    def world_from_object(self, name: str) -> Pose:
+        """Where an object stands now. Raises InvalidValue for a name that is none of theirs."""
+        if name not in self.object_names:
+            raise InvalidValue(
+                f"no object of the scene is called {name!r}; "
+                f"there is {', '.join(self.object_names) or 'none'}"
+            )
+        placed = self._placed[self.object_names.index(name)]
+        return world_from_object(self.arm.client, placed)
 
     def clearance(self, joints: ArrayLike) -> Gap:
         """The nearest gap between the arm at `joints` (n,) and any thing of the scene.
@@ -131,9 +153,9 @@ class RobotScene(Closing):
     def blocked(self, joints: Array, needs: Sequence[float], own_need: float) -> bool:
         """Whether thing i is nearer than `needs[i]`, or two own links than `own_need`; fast."""
         self.place(joints)
-        return any(
-            self._nearer(body, need) for body, need in zip(self._bodies, needs, strict=True)
-        ) or any(self._pair_nearer(a, b, own_need) for a, b in self._pairs)
+        return any(self._nearer(body, needs) for body in self._on_body) or any(
+            self._pair_nearer(a, b, own_need) for a, b in self._pairs
+        )
 
     def place(self, joints: Array) -> None:
         """Put the arm and what it holds at `joints`."""
@@ -145,7 +167,7 @@ class RobotScene(Closing):
         points = [
             (point[8], part.name, point[6])
             for part in self.parts
-            for point in self._points(part, self._bodies[thing], -1, reach)
+            for point in self._points(part, *self._at[thing], reach)
         ]
         if not points:
             return None
@@ -169,12 +191,14 @@ class RobotScene(Closing):
             part.body, body, reach, part.link, link, physicsClientId=self.arm.client
         )
 
-    def _nearer(self, body: int, need: float) -> bool:
+    def _nearer(self, body: int, needs: Sequence[float]) -> bool:
         """One query for the whole arm: a quarter of the time of one for each link."""
-        client, fixed = self.arm.client, self.arm.fixed_links
+        client, fixed, things = self.arm.client, self.arm.fixed_links, self._on_body[body]
+        reach = max(needs[thing] for thing in things.values())
         for own in (self.arm.body, *self._held.bodies):
-            for point in self._p.getClosestPoints(own, body, need, physicsClientId=client):
-                if point[8] < need and not (own == self.arm.body and point[3] in fixed):
+            for point in self._p.getClosestPoints(own, body, reach, physicsClientId=client):
+                near = point[8] < needs[things[point[4]]]
+                if near and not (own == self.arm.body and point[3] in fixed):
                     return True
         return False
 

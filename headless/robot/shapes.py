@@ -3,21 +3,26 @@
 
 Bullet rounds the corners of a box by its collision margin of 1 mm, which makes distances up to
 0.73 mm too large, the unsafe side (0.41 mm for a cylinder). With a margin of zero a box is exact to
-rounding and a cylinder to 0.02 mm, and neither is ever smaller than it should be on its faces.
+rounding and a cylinder to 0.02 mm, and neither is ever smaller than it should be on its faces. A
+ball is exact. Cones, tubes and prisms are the convex hulls of their pieces (`pieces.py`), to 0.02 mm
+as well.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
 from ...core.errors import InvalidValue
 from ...core.pose import Pose
-from ...core.primitives import Box, Cylinder, Primitive
+from ...core.primitives import Box, Cylinder, Primitive, Sphere
 from .bullet import position_and_quaternion, pybullet
 from .environment import WorldMesh
+from .pieces import pieces_of, pieces_text
 
 # at some 100 000 Bullet's shared memory is full; a query goes through all of them
 MOST_HULL_VERTICES = 30_000
@@ -35,13 +40,37 @@ def table_top(
 
 
 def add_obstacle(client: int, thing: Primitive | WorldMesh) -> int:
-    """Put an exact box or cylinder, or the convex hull of a mesh, into the world; its body id.
-
-    Raises InvalidValue for a kind that has no shape here.
-    """
+    """Put a solid, or the convex hull of a mesh, into the world, never to move; its body id."""
     if isinstance(thing, WorldMesh):
         return _body(client, _hull(client, thing), Pose.identity())
-    return _body(client, _exact(client, thing), thing.world_from_object)
+    return _body(client, collision_shape(client, thing), thing.world_from_object)
+
+
+def collision_shape(client: int, thing: Primitive, frame_from_object: Pose | None = None) -> int:
+    """The shape of a solid, to make bodies of: `frame_from_object` puts it into a link's frame."""
+    p: Any = pybullet()
+    at, turn = position_and_quaternion(frame_from_object or Pose.identity())
+    place = {
+        "collisionFramePosition": at,
+        "collisionFrameOrientation": turn,
+        "physicsClientId": client,
+    }
+    if isinstance(thing, Box):
+        half = (thing.size / 2).tolist()
+        shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=half, **place)
+    elif isinstance(thing, Sphere):
+        shape = p.createCollisionShape(p.GEOM_SPHERE, radius=thing.radius, **place)
+    elif isinstance(thing, Cylinder):
+        size = {"radius": thing.radius, "height": thing.height}
+        shape = p.createCollisionShape(p.GEOM_CYLINDER, **size, **place)
+    else:
+        with TemporaryDirectory(prefix="monocell-") as folder:
+            file = Path(folder) / "pieces.obj"
+            file.write_text(pieces_text(pieces_of(thing)), encoding="ascii")
+            shape = p.createCollisionShape(p.GEOM_MESH, fileName=str(file), **place)
+    # Bullet sets margins through the base of a body alone; the shape keeps what it was given there
+    p.removeBody(_body(client, shape, Pose.identity()), physicsClientId=client)
+    return int(shape)
 
 
 def add_sphere(client: int, radius: float) -> int:
@@ -58,18 +87,6 @@ def add_rod(client: int, radius: float, length: float) -> int:
         p.GEOM_CAPSULE, radius=radius, height=length, physicsClientId=client
     )
     return _body(client, shape, Pose.identity())
-
-
-def _exact(client: int, thing: Primitive) -> Any:
-    p: Any = pybullet()
-    if isinstance(thing, Box):
-        half = (thing.size / 2).tolist()
-        return p.createCollisionShape(p.GEOM_BOX, halfExtents=half, physicsClientId=client)
-    if isinstance(thing, Cylinder):
-        return p.createCollisionShape(
-            p.GEOM_CYLINDER, radius=thing.radius, height=thing.height, physicsClientId=client
-        )
-    raise InvalidValue(f"{thing.name}: a {thing.kind} has no exact collision shape; export a mesh")
 
 
 def _hull(client: int, mesh: WorldMesh) -> Any:

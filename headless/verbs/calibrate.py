@@ -87,6 +87,9 @@ def run(args: argparse.Namespace) -> int:
     else:
         tell(report)
     warn(report.warnings)
+    left_out = len(cell.sightings) - len(calibration.sightings)
+    if left_out:
+        warn([f"{left_out} of {len(cell.sightings)} sightings have use: false and were left out"])
     if failed and (args.sigma_map is not None or _advice_asked(args)):
         warn(["no map and no advice from a calibration that failed"])
     if cell.mount is not None and cell.mount.world_from_flange is None:

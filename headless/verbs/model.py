@@ -10,7 +10,7 @@ from ...core.document.cell_file import read_cell, write_cell
 from ...core.document.entries import object_entry
 from ...core.errors import InvalidValue
 from ...core.modelling.modelled import Modelled
-from ...core.modelling.solve import model_cell
+from ...core.modelling.solve import model
 from ..told import millimetres, point_told, print_json, table, warn
 
 
@@ -25,6 +25,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="PIXELS",
         help="1 sigma of a pick in pixels (default 1)",
     )
+    parser.add_argument(
+        "--joint",
+        action="store_true",
+        help="solve all objects and the camera's own error as one problem, so that what is known "
+        "of one improves the others",
+    )
     parser.add_argument("--json", action="store_true", help="print JSON")
 
 
@@ -33,7 +39,8 @@ def run(args: argparse.Namespace) -> int:
     cell = read_cell(args.cell)
     if not any(thing.picks for thing in cell.things):
         raise InvalidValue(f"{args.cell}: no object has picks, so there is nothing to model")
-    solved, modelled = model_cell(cell, args.pick_sigma)
+    modelling = model(cell, args.pick_sigma, joint=args.joint)
+    solved, modelled = modelling.cell, modelling.results
     if args.out is not None:
         write_cell(solved, args.out)
     if args.json:
@@ -42,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
         tell(modelled)
     if cell.camera.covariance is None:
         warn(["the camera's pose states no error: each ± holds the picks' error alone"])
-    warn([warning for m in modelled for warning in m.warnings])
+    warn([*modelling.warnings, *(warning for m in modelled for warning in m.warnings)])
     return 0
 
 

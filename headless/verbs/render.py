@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from ...core.atomic import made_folder
 from ...core.cell import Cell
 from ...core.document.cell_file import read_cell, write_cell
 from ...core.errors import InvalidValue
+from ...core.primitives import Primitive
 from ...core.sighting import SphereSighting
 from ..blender import require_blender
 from ..told import progress
@@ -58,12 +60,24 @@ def _named(cell: Cell, out: Path) -> Cell:
     """Pictures by their bare names in the new folder; a cell without a picture gets one."""
     return replace(
         cell,
+        objects=tuple(_moved_textures(thing, cell, out) for thing in cell.objects),
         picture=Path(cell.picture or "cell.png").with_suffix(".png").name,
         sightings=tuple(
             replace(s, picture=Path(s.picture).with_suffix(".png").name) for s in cell.sightings
         ),
         folder=out,
     )
+
+
+def _moved_textures(thing: Primitive, cell: Cell, out: Path) -> Primitive:
+    """Textures stay where they are; from the new folder they have other names."""
+    if thing.appearance is None:
+        return thing
+
+    def moved(name: str) -> str:
+        return Path(os.path.relpath(cell.path_of(name).resolve(), out.resolve())).as_posix()
+
+    return replace(thing, appearance=thing.appearance.with_pictures(moved))
 
 
 def _refuse_shared_names(truth: Cell) -> None:
@@ -94,7 +108,7 @@ def _render_all(truth: Cell, samples: int) -> None:
 
     assert truth.picture is not None
     progress(f"rendering {truth.picture}")
-    with Stage(WorkCell(truth.camera, truth.objects)) as stage:
+    with Stage(WorkCell(truth.camera, truth.objects, folder=truth.folder)) as stage:
         stage.render(truth.folder / truth.picture, samples=samples)
     with Stage(WorkCell(truth.camera)) as stage:
         for sighting in truth.sightings:

@@ -44,8 +44,10 @@ def run(args: argparse.Namespace) -> int:
             environment.objects,
             meshes=environment.meshes,
             table=floor_of(environment.extras),
+            composites=environment.composites,
         ) as scene,
     ):
+        warn(scene.warnings)
         ends = joints_from(args.start), joints_from(args.goal)
         motion, plan = solve_motion(scene, *ends, args.seed)
         if args.picture is not None:

@@ -1,42 +1,53 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+from dataclasses import replace
 from types import SimpleNamespace
 
 import bench_cell
 import numpy as np
 import pytest
-from monocell.addon.drawing import GREEN, ORANGE, RED, YELLOW
-from monocell.addon.overlay_lines import ball_strokes, object_strokes
-from monocell.addon.report import dump_report, parse_report, report_of
+from monocell.addon.drawing import GREEN, GREY, ORANGE, RED, WHITE, YELLOW
+from monocell.addon.overlay_lines import (
+    object_strokes,
+    sighting_color,
+    sighting_labels,
+    sighting_strokes,
+)
+from monocell.addon.report import (
+    AdvisedPlace,
+    Report,
+    SeenSighting,
+    dump_report,
+    parse_report,
+    seen_of,
+)
+from monocell.core.sighting import PointSighting
 
 
-def sighting(status, centre=None, rms=0.1):
+def seen(status, centre=None, rms=0.1, reason=""):
     outline = None if centre is None else SimpleNamespace(centre_camera=centre, radius=0.04)
-    return SimpleNamespace(status=status, reason="", rms_pixels=rms, outline=outline)
-
-
-def calibration(*sightings):
-    return SimpleNamespace(
-        verdict="weak",
-        warnings=("a", "b"),
-        rms_pixels=0.2,
-        edge_bias_pixels=-0.1,
-        sightings=sightings,
-    )
+    return seen_of(SimpleNamespace(status=status, reason=reason, rms_pixels=rms, outline=outline))
 
 
 CENTRES = [bench_cell.POSE.apply(centre) for centre in bench_cell.CENTRES]
-REPORT = report_of(
-    calibration(
-        sighting("used", CENTRES[0]),
-        sighting("doubtful", CENTRES[1] + [0.002, 0, 0]),
-        sighting("rejected", rms=float("nan")),
-    )
+REPORT = Report(
+    "weak",
+    ("a", "b"),
+    0.2,
+    -0.1,
+    (
+        seen("used", CENTRES[0]),
+        seen("doubtful", CENTRES[1] + [0.002, 0, 0], reason="half of it is hidden"),
+        seen("rejected", rms=float("nan")),
+        seen("used", CENTRES[3]),
+        seen("used", CENTRES[4]),
+    ),
+    "0.21 mm on floor",
+    (AdvisedPlace((0.4, 0.0, 0.2), (400.0, 300.0), 20.0, 0.19),),
 )
 
 
-def strokes(tmp_path, active=-1):
-    cell = bench_cell.cell_of(folder=tmp_path)
-    return list(ball_strokes(cell, REPORT, active))
+def strokes(tmp_path, active=-1, report=REPORT):
+    return list(sighting_strokes(bench_cell.cell_of(folder=tmp_path), report, active))
 
 
 def test_a_report_comes_back_from_its_text():
@@ -44,9 +55,48 @@ def test_a_report_comes_back_from_its_text():
     assert parse_report("") is None
 
 
-def test_balls_are_coloured_by_their_status(tmp_path):
+def test_balls_are_coloured_by_what_the_pose_leaves_of_them(tmp_path):
     # each has a dark halo below it
-    assert [stroke.color for stroke in strokes(tmp_path)[1::2]] == [GREEN, ORANGE, RED]
+    colors = [stroke.color for stroke in strokes(tmp_path)[1:6:2]]
+    assert np.allclose(colors, [GREEN, ORANGE, RED])
+    poor = replace(REPORT, sightings=(seen("used", CENTRES[0], rms=3.0),))
+    assert sighting_color(poor, 0, True) == pytest.approx(RED)
+    assert sighting_color(poor, 0, False) == GREY
+    assert sighting_color(None, 0, True) == WHITE
+
+
+def test_the_doubtful_say_why_and_the_others_their_number(tmp_path):
+    labels = list(sighting_labels(bench_cell.cell_of(folder=tmp_path), REPORT))
+    assert [label.text for label in labels] == [
+        "1",
+        "2  half of it is hidden",
+        "3",
+        "4",
+        "5",
+        "next 1: 0.19 mm",
+    ]
+
+
+def test_advice_is_drawn_where_the_ball_would_be_seen(tmp_path):
+    (line,) = strokes(tmp_path)[-1].lines
+    centre = bench_cell.POSE.apply(np.array([0.4, 0.0, 0.2]))
+    expected = bench_cell.INTRINSICS.undistorted().project(centre[None])[0]
+    assert np.linalg.norm((line.min(axis=0) + line.max(axis=0)) / 2 - expected) < 1.0
+
+
+def test_a_clicked_point_is_a_cross_at_its_pixel(tmp_path):
+    point = PointSighting("bench.png", [0.4, 0, 0], [300.0, 200.0])
+    cell = replace(bench_cell.cell_of(folder=tmp_path), sightings=(point,))
+    _, cross = sighting_strokes(cell, None, -1)
+    i = bench_cell.INTRINSICS
+    at = i.undistorted().project(i.rays(np.array([[300.0, 200.0]])))[0]
+    assert np.concatenate(cross.lines).mean(axis=0) == pytest.approx(at)
+
+
+def test_an_edit_keeps_what_still_holds_and_forgets_the_advice():
+    arranged = REPORT.arranged([1, None])
+    assert arranged.sightings == (REPORT.sightings[1], SeenSighting("", "", None, None))
+    assert arranged.changed and arranged.advice == ()
 
 
 def test_a_ball_that_was_not_found_is_drawn_where_it_should_be(tmp_path):
@@ -56,7 +106,7 @@ def test_a_ball_that_was_not_found_is_drawn_where_it_should_be(tmp_path):
 
 
 def test_the_active_ball_is_drawn_wider(tmp_path):
-    widths = [stroke.width for stroke in strokes(tmp_path, active=1)[1::2]]
+    widths = [stroke.width for stroke in strokes(tmp_path, active=1)[1:6:2]]
     assert widths[1] > widths[0] == widths[2]
 
 
@@ -80,7 +130,7 @@ def test_the_active_object_is_yellow():
 
 
 def test_nothing_is_drawn_before_a_calibration(tmp_path):
-    assert list(ball_strokes(bench_cell.cell_of(folder=tmp_path), None, 0)) == []
+    assert strokes(tmp_path, 0, None) == []
 
 
 @pytest.mark.parametrize("active", [True, False])

@@ -50,7 +50,7 @@ def test_calibration_says_how_many_sightings_are_missing(addon, module, tmp_path
     cut = text.index('"sightings"')
     path.write_text(text[:cut] + '"sightings": [], "references": [], "objects": []\n}\n')
     addon.ops.monocell.open_cell(filepath=str(path))
-    with pytest.raises(RuntimeError, match="has 0 ball sightings; a pose needs 3"):
+    with pytest.raises(RuntimeError, match="has 0 ball sightings in use; a pose needs 3"):
         addon.ops.monocell.calibrate()
     # a document without references has the floor to stand things on
     assert [row.name for row in addon.context.scene.monocell_cell.references] == ["floor"]

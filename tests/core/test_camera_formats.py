@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from monocell.core import Camera, Distortion, Intrinsics, Pose
 from monocell.core.document.camera_file import read_camera, write_camera
+from monocell.core.document.entries import camera_entry
 from monocell.core.errors import DocumentError, InvalidValue
 
 KALIBR = """cam0:
@@ -272,3 +273,14 @@ def test_any_text_is_a_camera_or_one_line_of_refusal(tmp_path_factory, text):
         read_camera(path)
     except (DocumentError, InvalidValue) as refusal:
         assert "\n" not in str(refusal)
+
+
+def test_a_lens_report_is_a_camera_file_unless_it_failed(tmp_path):
+    path = tmp_path / "lens.json"
+    camera = Camera(Intrinsics(1280, 960, 1200.0, 1195.0, 652.3, 471.8))
+    report = {"verdict": "good", "board": "chessboard 9x6", "camera": camera_entry(camera)}
+    path.write_text(json.dumps(report))
+    is_lens(read_camera(path), "none", [])
+    path.write_text(json.dumps(report | {"verdict": "failed"}))
+    with pytest.raises(DocumentError, match="this calibration of the lens failed"):
+        read_camera(path)

@@ -87,3 +87,28 @@ def test_a_missing_picture_is_told_before_any_is_searched(tmp_path, monkeypatch)
     gone = replace(cell.sightings[5], picture="gone.png")
     with pytest.raises(PictureError, match=r"gone\.png: there is no such picture"):
         calibrate_cell(replace(cell, sightings=(*cell.sightings[:5], gone)))
+
+
+def test_a_sighting_switched_off_changes_nothing_and_is_kept(tmp_path):
+    cell = write_rig(tmp_path)
+    _, without = calibrate_cell(replace(cell, sightings=cell.sightings[1:]))
+    off = replace(cell.sightings[0], picture="gone.png", use=False)
+    solved, calibration = calibrate_cell(replace(cell, sightings=(off, *cell.sightings[1:])))
+    assert len(calibration.sightings) == len(cell.sightings) - 1
+    assert [s.use for s in solved.sightings].count(False) == 1
+    np.testing.assert_array_equal(calibration.camera.pose.matrix(), without.camera.pose.matrix())
+
+
+def test_who_watches_hears_of_every_picture_and_can_end_the_work(tmp_path):
+    class Enough(Exception):
+        pass
+
+    cell, heard = write_rig(tmp_path), []
+    calibrate_cell(cell, watch=heard.append)
+    assert set(heard) == {s.picture for s in cell.sightings}
+
+    def ends(name):
+        raise Enough
+
+    with pytest.raises(Enough):
+        calibrate_cell(cell, watch=ends)

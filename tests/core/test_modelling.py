@@ -7,11 +7,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from monocell.core import Appearance, Box, Camera, Cell, Pose, ReferenceLine, Sketch
+from monocell.core import (
+    Appearance,
+    Box,
+    Camera,
+    Cell,
+    Pose,
+    ReferenceLine,
+    ReferencePlane,
+    Relation,
+    Sketch,
+)
 from monocell.core.errors import InvalidValue, NoPose
-from monocell.core.modelling.solve import model_cell, solve_sketch
+from monocell.core.modelling.solve import model, model_cell, solve_sketch
+from monocell.core.reference import PendingReference
+from monocell.core.references.sources import FeatureOf
+from monocell.core.shape.features import feature
 from picked_scene import (
     FLOOR,
+    TWIST_COVARIANCE,
     WALL,
     box_on,
     box_picks,
@@ -19,6 +33,7 @@ from picked_scene import (
     cylinder_on,
     cylinder_picks,
     deviation,
+    noisy,
 )
 
 EDGE = ReferenceLine("edge", np.zeros(3), np.array([1.0, 0.0, 0.0]))
@@ -105,3 +120,86 @@ def test_sigma_scales_what_picks_alone_determine():
     one = solve_sketch(camera(), block_sketch(camera()), [FLOOR], (), 1.0).object.size_sigma()
     half = solve_sketch(camera(), block_sketch(camera()), [FLOOR], (), 0.5).object.size_sigma()
     np.testing.assert_allclose(half, one / 2, rtol=1e-6)
+
+
+def stacked_cell(cam, rng=None, **known):
+    """A crate on the floor, a block on the crate by a reference made from its top, both picked."""
+    crate = box_on(FLOOR, size=(0.25, 0.2, 0.12))
+    top = feature(crate, "top")
+    on_top = ReferencePlane("lid", top.point, top.direction)
+    block = replace(box_on(on_top, x=0.02, y=0.01, yaw=-0.2, size=(0.1, 0.07, 0.08)), name="block")
+    picks = {
+        "crate": box_picks(replace(crate, name="crate"), cam, 4, (0, 1, 2, 3)),
+        "block": box_picks(block, cam, 4, (0, 1, 2, 3)),
+    }
+    if rng is not None:
+        picks = {name: noisy(p, rng, 1.0) for name, p in picks.items()}
+    lid = PendingReference("lid", "plane", FeatureOf("crate.top"))
+    sketches = (
+        Sketch("block", "box", "lid", picks["block"]),
+        Sketch("crate", "box", "floor", picks["crate"], known),
+    )
+    return Cell(cam, references=(FLOOR, lid), sketches=sketches), crate, block
+
+
+@pytest.mark.parametrize("joint", [False, True])
+def test_what_stands_on_an_object_is_solved_after_it_and_stays_on_it(joint):
+    cam = camera()
+    cell, crate, block = stacked_cell(cam)
+    solved = model(cell, joint=joint).cell
+    assert [thing.name for thing in solved.objects] == ["block", "crate"]
+    np.testing.assert_allclose(deviation(solved.objects[0], block), 0, atol=1e-8)
+    np.testing.assert_allclose(deviation(solved.objects[1], crate), 0, atol=1e-8)
+    # the reference follows the crate, and remembers where it comes from
+    lid = solved.reference("lid")
+    assert lid.point[2] == pytest.approx(0.12, abs=1e-9)
+    assert lid.source.of == "crate.top"
+
+
+def test_a_typed_height_of_the_crate_lifts_what_stands_on_it():
+    cam = camera(covariance=TWIST_COVARIANCE)
+    cell, _, _ = stacked_cell(cam, np.random.default_rng(1), size_z=0.13)
+    for joint in (False, True):
+        solved = {thing.name: thing for thing in model(cell, joint=joint).cell.objects}
+        foot = solved["block"].world_from_object.translation[2] - solved["block"].size[2] / 2
+        assert foot == pytest.approx(0.13, abs=1e-9)
+
+
+def test_a_wrong_size_is_told_by_what_it_does_to_the_picks():
+    cam = camera(covariance=TWIST_COVARIANCE)
+    cell, _, _ = stacked_cell(cam, np.random.default_rng(2), size_z=0.16)
+    told = [w for result in model(cell, joint=True).results for w in result.warnings]
+    assert any("crate: the picks miss the box" in warning for warning in told)
+
+
+def test_a_wrong_calibration_is_told_when_known_sizes_pull_it():
+    true = camera(covariance=TWIST_COVARIANCE)
+    cell, _, _ = stacked_cell(true, None, size_x=0.25, size_y=0.2, size_z=0.12)
+    assert not model(cell, joint=True).warnings
+    wrong = true.placed(true.pose.perturbed([0.015, 0, 0, 0, -0.01, 0]), TWIST_COVARIANCE)
+    told = model(cell.with_camera(wrong), 0.3, joint=True).warnings
+    assert any("pull camera and references" in warning for warning in told)
+
+
+def test_a_second_joint_run_changes_nothing():
+    cam = camera(covariance=TWIST_COVARIANCE)
+    cell, _, _ = stacked_cell(cam, np.random.default_rng(3))
+    once = model(cell, joint=True).cell
+    twice = model(once, joint=True).cell
+    for a, b in zip(once.objects, twice.objects, strict=True):
+        np.testing.assert_allclose(deviation(a, b), 0, atol=1e-7)
+        np.testing.assert_allclose(a.covariance, b.covariance, rtol=1e-3, atol=1e-12)
+
+
+def test_objects_that_hold_each_other_are_solved_together():
+    cam = camera()
+    twins = [box_on(FLOOR, x=x, size=(0.1, 0.1, 0.1)) for x in (-0.15, 0.15)]
+    sketches = tuple(
+        Sketch(
+            name, "box", "floor", box_picks(twin, cam), relations=(Relation("same_size", other),)
+        )
+        for name, other, twin in (("a", "b", twins[0]), ("b", "a", twins[1]))
+    )
+    solved = model(Cell(cam, references=(FLOOR,), sketches=sketches)).cell.objects
+    for thing, twin in zip(solved, twins, strict=True):
+        np.testing.assert_allclose(deviation(thing, twin), 0, atol=1e-8)

@@ -1,21 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Clicks in a real window: MONOCELL_SCREENSHOTS names a folder that the screenshots are kept in."""
-
-import json
-import os
-import shutil
-import subprocess
-from pathlib import Path
+"""Modelling by clicks in a real window."""
 
 import bench_cell
 import cv2
 import numpy as np
 import pytest
+from conftest import in_window
 from monocell.core.document.cell_file import read_cell
 
 pytestmark = [pytest.mark.real_blender, pytest.mark.slow]
 
-STEPS = Path(__file__).with_name("window_steps.py")
 # a click names a screen pixel, which the view shows as up to so many pixels of the picture
 CLICK_PIXELS = 1.0
 
@@ -88,29 +82,8 @@ def worked(window_blender, tmp_path_factory):
         "drum": seen([*drum["rim"], *drum["top"]]),
         "width": bench_cell.INTRINSICS.width,
         "height": bench_cell.INTRINSICS.height,
-        "out": str(folder),
     }
-    (folder / "job.json").write_text(json.dumps(job))
-    try:
-        run = window_blender.run(
-            *("--enable-event-simulate", "--window-geometry", 0, 0, 1600, 1000),
-            *("--python", STEPS, "--", folder / "job.json"),
-            timeout=240,
-        )
-    except subprocess.TimeoutExpired as late:
-        pytest.fail(f"the window never finished: {late.stdout}")
-    keep_screenshots(folder)
-    assert (folder / "found.json").is_file(), run.stdout + run.stderr
-    return folder, json.loads((folder / "found.json").read_text()), run
-
-
-def keep_screenshots(folder):
-    kept = os.environ.get("MONOCELL_SCREENSHOTS")
-    if kept:
-        place = Path(kept) / folder.name
-        place.mkdir(parents=True, exist_ok=True)
-        for picture in folder.glob("[0-9]_*.png"):
-            shutil.copy(picture, place)
+    return in_window(window_blender, folder, "window_steps.py", job)
 
 
 def objects_of(folder, name):

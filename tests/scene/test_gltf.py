@@ -11,13 +11,17 @@ import pytest
 from monocell.core.appearance import Appearance
 from monocell.core.camera import Camera
 from monocell.core.cell import Cell
+from monocell.core.composite import Composite
 from monocell.core.distortion import Distortion
-from monocell.core.document.entries import camera_entry, object_entry
+from monocell.core.document.entries import camera_entry, composite_entry, object_entry
 from monocell.core.errors import InvalidValue, MonocellError
 from monocell.core.intrinsics import Intrinsics
+from monocell.core.motion import Motion
 from monocell.core.pose import Pose
-from monocell.core.primitives import Box, Cylinder
+from monocell.core.primitives import Box, Cone, Cylinder, Prism, Sphere, Tube
 from monocell.core.reference import ReferencePlane
+from monocell.core.relation import Relation
+from monocell.core.sketch import Sketch
 
 pytestmark = pytest.mark.blender
 
@@ -43,6 +47,27 @@ CELL = Cell(
         Cylinder("drum", Pose.identity(), radius=1 / 30, height=0.17),
         Cylinder("lying", POSE_LYING := Pose.from_rotation_vector([1.2, 0.3, 0], [0, 1, 2]),
                  radius=1 / 30, height=0.17),
+    ),
+)  # fmt: skip
+HINGE = Motion("attached", to="block", joint="hinge", axis=[0, 1, 0], limits=(-1, 2), mass=0.4)
+EVERY_KIND = Cell(
+    CAMERA,
+    references=CELL.references,
+    objects=(
+        *CELL.objects,
+        Sphere("ball", Pose.identity(), radius=0.04, motion=Motion("movable", density=700)),
+        Cone("cone", POSE_LYING, radius=0.05, height=0.2),
+        Cone("frustum", POSE_LYING, radius=0.05, top_radius=0.03, height=0.2, motion=HINGE),
+        Tube("tube", POSE_LYING, radius=0.05, inner_radius=0.03, height=0.2),
+        Prism("wedge", POSE_LYING, polygon=[[-1, -1], [1, -1], [0, 2]], height=0.2,
+              relations=(Relation("lies_on", "block.top"), Relation("parallel", "drum.axis"))),
+        Prism("other", POSE_LYING, polygon=[[-2, -1], [2, -1], [0, 2]], height=0.2),
+    ),
+    sketches=(Sketch("picked", "box", None, {}), Sketch("too", "box", None, {})),
+    composites=(
+        Composite("arm", ("drum", "lying", "picked"), Motion("movable", mass=3)),
+        Composite("left out", ("too",)),
+        Composite("group", ("tube",)),
     ),
 )  # fmt: skip
 YUP_FROM_ZUP = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0.0]])
@@ -92,6 +117,28 @@ def test_objects_of_one_shape_and_colour_share_a_mesh(blender, tmp_path):
     assert len(document["meshes"]) == 2
 
 
+def test_every_kind_carries_what_it_is_and_how_it_moves(blender, tmp_path):
+    document = exported(EVERY_KIND, tmp_path / "cell.glb")
+    nodes = nodes_of(document)
+    for thing in EVERY_KIND.objects:
+        assert nodes[thing.name]["extras"]["monocell"] == object_entry(thing, with_picks=False)
+    # two prisms of one height are two meshes all the same
+    assert nodes["wedge"]["mesh"] != nodes["other"]["mesh"]
+
+
+def test_a_composite_is_a_node_without_mesh_above_its_solved_parts(blender, tmp_path):
+    document = exported(EVERY_KIND, tmp_path / "cell.glb")
+    nodes = nodes_of(document)
+    arm = nodes["arm"]
+    assert {document["nodes"][i]["name"] for i in arm["children"]} == {"drum", "lying"}
+    assert "mesh" not in arm and "translation" not in arm and "rotation" not in arm
+    entry = composite_entry(Composite("arm", ("drum", "lying"), Motion("movable", mass=3)))
+    assert arm["extras"]["monocell"] == {"kind": "composite"} | entry
+    assert "left out" not in nodes and len(nodes["group"]["children"]) == 1
+    roots = [document["nodes"][i]["name"] for i in document["scenes"][0]["nodes"]]
+    assert "drum" not in roots and "arm" in roots
+
+
 def test_the_users_scene_stays_as_it_was(blender, tmp_path):
     from monocell.scene.objects import build_object
 
@@ -128,7 +175,7 @@ def test_a_missing_folder_or_another_ending_is_refused_and_leaves_nothing(blende
     assert len(blender.data.scenes) == 1
 
 
-@pytest.mark.parametrize("cell", [CELL, Cell(CAMERA)], ids=["full", "empty"])
+@pytest.mark.parametrize("cell", [CELL, EVERY_KIND, Cell(CAMERA)], ids=["full", "every", "empty"])
 def test_the_khronos_validator_has_nothing_to_say(blender, tmp_path, cell):
     if shutil.which("node") is None:
         pytest.skip("no node here: the Khronos validator runs on it")

@@ -181,12 +181,13 @@ def test_a_cylinder_is_smooth_round_and_sharp_at_its_rims(collection):
 @pytest.mark.parametrize("shape", ["box", "cylinder", "sphere"])
 def test_meshes_are_closed_and_face_outwards(blender, shape):
     import bmesh
-    from monocell.scene import meshes
+    from monocell.core.shape import tessellation as meshes
+    from monocell.scene.meshes import fill_mesh
 
     volume = {"box": 0.006, "cylinder": np.pi * 0.01 * 0.3, "sphere": 4 / 3 * np.pi * 0.001}
     made = {"box": meshes.box([0.1, 0.2, 0.3]), "cylinder": meshes.cylinder(0.1, 0.3, 512)}
     mesh = blender.data.meshes.new(shape)
-    meshes.fill_mesh(mesh, made.get(shape) or meshes.sphere(0.1))
+    fill_mesh(mesh, made.get(shape) or meshes.sphere(0.1, 512))
     assert not mesh.validate()
     solid = bmesh.new()
     solid.from_mesh(mesh)

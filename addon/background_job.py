@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Work that takes its time: an operator's own function in, progress and a way out meanwhile.
+
+The work runs in a thread and touches core only: Blender's data are read before it starts and
+written after it has ended, by Blender's own thread.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from threading import Thread
+from typing import Any
+
+from ..core.errors import MonocellError
+
+# how often Blender looks after the work, seconds
+TICK = 0.08
+
+
+class Stopped(Exception):
+    """Ends the work that was cancelled."""
+
+
+class Watch:
+    """What the work tells of its progress, and what it is told: to stop.
+
+    Called with the name of each thing it comes to.
+    """
+
+    def __init__(self, total: int) -> None:
+        self.total, self.done, self.name = max(total, 1), 0, ""
+        self._stop = False
+
+    def __call__(self, name: str) -> None:
+        if self._stop:
+            raise Stopped
+        self.done, self.name = self.done + 1, name
+
+    def stop(self) -> None:
+        """Let the work end at the next thing it comes to."""
+        self._stop = True
+
+    @property
+    def share(self) -> float:
+        """How much is done, from 0 to 1; work that takes longer than told stays just below."""
+        return min(self.done / self.total, 0.97)
+
+
+class Job:
+    """One piece of work in a thread. `result` raises what the work raised."""
+
+    def __init__(self, work: Callable[[Watch], Any], total: int) -> None:
+        self.watch = Watch(total)
+        self._work, self._result, self._error = work, None, None
+        self._thread = Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    @property
+    def running(self) -> bool:
+        return self._thread.is_alive()
+
+    def result(self) -> Any:
+        """What the work returned, once it has ended."""
+        self._thread.join()
+        if self._error is not None:
+            raise self._error
+        return self._result
+
+    def _run(self) -> None:
+        try:
+            self._result = self._work(self.watch)
+        except BaseException as error:  # raised again where the result is asked for
+            self._error = error
+
+
+class WorksInBackground:
+    """A mixin for operators with `prepare(context)` and `finish(context, result)`.
+
+    `prepare` returns a title, how many things the work comes to, and the work, a function of a
+    `Watch`. Called by a script the operator waits for it; pressed in a window it does not.
+    """
+
+    def execute(self, context):
+        """Do it and wait."""
+        try:
+            _, total, work = self.prepare(context)
+            return self.finish(context, work(Watch(total)))
+        except MonocellError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+
+    def invoke(self, context, event):
+        """Start it and come back."""
+        state = context.window_manager.monocell_work
+        if state.title:
+            self.report({"ERROR"}, f"{state.title} is still running: wait, or cancel it")
+            return {"CANCELLED"}
+        try:
+            title, total, work = self.prepare(context)
+        except MonocellError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        state.title, state.share, state.name, state.cancel = title, 0.0, "", False
+        self._scene, self._text = context.scene.name, context.scene.monocell_cell.text
+        self._job = Job(work, total)
+        self._timer = context.window_manager.event_timer_add(TICK, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        _redraw(context)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        """Look after the work; all else goes on as ever."""
+        state, watch = context.window_manager.monocell_work, self._job.watch
+        if event.type == "ESC" and event.value == "PRESS":
+            state.cancel = True
+        if state.cancel:
+            watch.stop()
+        if event.type == "TIMER":
+            state.share, state.name = watch.share, watch.name
+            told = "Cancelling ..." if state.cancel else f"{state.title}: {watch.name}"
+            context.workspace.status_text_set(f"{told}   {100 * watch.share:.0f} %   Esc cancels")
+            _redraw(context)
+        if self._job.running or event.type != "TIMER":
+            return {"RUNNING_MODAL"} if event.type == "ESC" else {"PASS_THROUGH"}
+        self._end(context)
+        return self._ended(context)
+
+    def cancel(self, context):
+        """Blender's own way out, when a file is loaded or the window closes."""
+        self._job.watch.stop()
+        self._end(context)
+
+    def _ended(self, context):
+        try:
+            result = self._job.result()
+        except Stopped:
+            self.report({"INFO"}, "Cancelled: nothing was changed")
+            return {"CANCELLED"}
+        except MonocellError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        scene = context.scene
+        if scene.name != self._scene or scene.monocell_cell.text != self._text:
+            self.report({"ERROR"}, "The cell was changed meanwhile: start again for it as it is")
+            return {"CANCELLED"}
+        return self.finish(context, result)
+
+    def _end(self, context):
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.monocell_work.title = ""
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+        _redraw(context)
+
+
+def _redraw(context):
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()

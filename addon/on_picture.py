@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Being modal on the picture: mouse and keys in a view of it in, an operator's own steps called."""
+
+import bpy
+
+from .cell_scene import looks_through
+from .document import bare_cell
+from .picture_frame import free_part, picture_frame
+
+# what moves the view goes to Blender, so that zoom and pan work as ever
+VIEW_EVENTS = frozenset(
+    {
+        "MOUSEMOVE",
+        "INBETWEEN_MOUSEMOVE",
+        "MIDDLEMOUSE",
+        "WHEELUPMOUSE",
+        "WHEELDOWNMOUSE",
+        "WHEELINMOUSE",
+        "WHEELOUTMOUSE",
+        "TRACKPADPAN",
+        "TRACKPADZOOM",
+        "NDOF_MOTION",
+        "HOME",
+        "NUMPAD_PLUS",
+        "NUMPAD_MINUS",
+        "NUMPAD_0",
+        "TIMER",
+        "WINDOW_DEACTIVATE",
+    }
+)
+CANCEL_EVENTS = frozenset({"ESC", "RIGHTMOUSE"})
+CONFIRM_EVENTS = frozenset({"RET", "NUMPAD_ENTER"})
+PAN_KEYS = (("MOUSE_MMB", "Pan, wheel zooms"),)
+
+
+class OnPicture:
+    """A mixin for operators that are worked with the mouse on the picture.
+
+    `begin` starts it from `invoke`. The operator has `handle(context, area, event)`, which returns
+    what a modal operator returns, or None to go on; `paint(context, frame)`, which draws; and
+    `keys()`, the icons and words of the status bar. Cancelling leaves nothing behind.
+    """
+
+    def begin(self, context, event):
+        """Become modal in the viewport that looks through the cell's camera."""
+        scene, space = context.scene, context.space_data
+        if space is None or space.type != "VIEW_3D" or not looks_through(scene, space):
+            self.report({"ERROR"}, "Look through the cell's camera first: picks are made there")
+            return {"CANCELLED"}
+        self._area = context.area.as_pointer()
+        self._intrinsics = bare_cell(scene).camera.intrinsics
+        self.cursor = None
+        self._follow(context.area, event)
+        self._handle = bpy.types.SpaceView3D.draw_handler_add(
+            self._draw, (context,), "WINDOW", "POST_PIXEL"
+        )
+        context.window_manager.modal_handler_add(self)
+        self.tell(context)
+        context.area.tag_redraw()
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        """One event: the operator's own, or something for Blender."""
+        area = self._its_area(context)
+        if area is None or (event.type in CANCEL_EVENTS and event.value == "PRESS"):
+            self.end(context)
+            return {"CANCELLED"}
+        if event.type == "MOUSEMOVE":
+            self._follow(area, event)
+        if event.type == "MIDDLEMOUSE" and not (event.shift or event.ctrl or event.alt):
+            # turning would leave the camera, and with it the picture
+            return self._pan(context, area, event)
+        if event.type in VIEW_EVENTS:
+            area.tag_redraw()
+            return {"PASS_THROUGH"}
+        if event.type == "LEFTMOUSE":
+            self._follow(area, event)
+        ended = self.handle(context, area, event)
+        if ended is not None:
+            return ended
+        self.tell(context)
+        area.tag_redraw()
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context):
+        """Blender's own way out, when a file is loaded or the window closes."""
+        self.end(context)
+
+    def end(self, context):
+        """Stop drawing and give the status bar back."""
+        bpy.types.SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
+        context.workspace.status_text_set(None)
+        area = self._its_area(context)
+        if area is not None:
+            area.tag_redraw()
+
+    def frame(self, context, area):
+        """The picture's frame in the area; None while the view looks elsewhere."""
+        space = area.spaces.active
+        if not looks_through(context.scene, space):
+            return None
+        return picture_frame(context.scene, window_region(area), space, self._intrinsics)
+
+    def pixel(self, context, area):
+        """The pixel under the cursor; None beside the picture or under a sidebar."""
+        frame = self.frame(context, area)
+        if frame is None:
+            return None
+        x, y = self.cursor
+        left, bottom, right, top = free_part(area, window_region(area))
+        if not (left <= x <= right and bottom <= y <= top):
+            return None
+        return frame.picture_pixel(x, y) if frame.contains(x, y) else None
+
+    def tell(self, context):
+        """Name the keys in the status bar."""
+        keys = (*self.keys(), *PAN_KEYS)
+
+        def draw(header, context):
+            row = header.layout.row(align=True)
+            for icon, text in keys:
+                row.label(text=text, icon=icon)
+                row.separator(factor=2.0)
+
+        context.workspace.status_text_set(draw)
+
+    def _follow(self, area, event):
+        """Keep where the mouse is in the region: events count pixels, so its middle is meant."""
+        region = window_region(area)
+        self.cursor = (event.mouse_x - region.x + 0.5, event.mouse_y - region.y + 0.5)
+
+    def _pan(self, context, area, event):
+        if event.value == "PRESS":
+            with context.temp_override(area=area, region=window_region(area)):
+                bpy.ops.view3d.move("INVOKE_DEFAULT")
+        return {"RUNNING_MODAL"}
+
+    def _its_area(self, context):
+        areas = context.window.screen.areas if context.window else ()
+        return next((area for area in areas if area.as_pointer() == self._area), None)
+
+    def _draw(self, context):
+        area = context.area
+        if area is None or area.as_pointer() != self._area:
+            return
+        frame = self.frame(context, area)
+        if frame is not None:
+            self.paint(context, frame)
+
+
+def window_region(area):
+    """The region of an area that shows the scene."""
+    return next(region for region in area.regions if region.type == "WINDOW")

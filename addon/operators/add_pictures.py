@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Add pictures with their positions: chosen files and positions as text in, sightings out."""
+
+from pathlib import Path
+from typing import ClassVar
+
+import bpy
+from bpy.props import CollectionProperty, EnumProperty, StringProperty
+
+from ..place_inputs import decimals
+from ..polls import NeedsCell
+from ..refusals import refuses
+from ..sightings import add_sightings
+
+
+class AddPictures(NeedsCell, bpy.types.Operator):
+    """Choose pictures of the ball; their positions are those copied, in the order of the names"""
+
+    bl_idname = "monocell.add_pictures"
+    bl_label = "Add Pictures with Positions"
+    bl_options: ClassVar = {"REGISTER", "UNDO"}
+
+    directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"SKIP_SAVE"})
+    filter_image: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    positions: StringProperty(
+        name="Positions",
+        description="A position a picture: x y z, parted by semicolons here; CSV and JSON too. "
+        "Filled with what was copied",
+        options={"SKIP_SAVE"},
+    )
+    unit: EnumProperty(
+        name="Unit",
+        description="Unit of the positions where they name none",
+        items=(("m", "m", "Metres"), ("mm", "mm", "Millimetres"), ("cm", "cm", "Centimetres")),
+    )
+
+    def invoke(self, context, event):
+        """Take what was copied, then let pictures be chosen."""
+        self.positions = context.window_manager.clipboard
+        self.unit = context.scene.monocell_inputs.position_unit
+        self.directory = context.scene.monocell_cell.folder + "/"
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def draw(self, context):
+        """Blender's call."""
+        self.layout.prop(self, "positions")
+        self.layout.prop(self, "unit", expand=True)
+        self.layout.prop(context.scene.monocell_inputs, "ball_radius")
+
+    @refuses
+    def execute(self, context):
+        """Pair pictures with positions in the order of their names."""
+        from ...core.document.sighting_text import Unsaid, sightings_from_text
+        from ...core.errors import PictureError
+
+        names = sorted(file.name for file in self.files if file.name)
+        if not names:
+            raise PictureError("no picture was chosen: choose one for each position")
+        radius = float(decimals([context.scene.monocell_inputs.ball_radius])[0])
+        given = sightings_from_text(self.positions, Unsaid(names, radius, self.unit))
+        count = add_sightings(context.scene, given, Path(bpy.path.abspath(self.directory)))
+        self.report({"INFO"}, f"{count} sightings added")
+        return {"FINISHED"}
