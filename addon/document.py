@@ -76,6 +76,14 @@ def bare_cell(scene: Any) -> Cell:
     return _parsed(stored.text, stored.folder)
 
 
+def active_plane(scene: Any) -> ReferencePlane | None:
+    """The list's active reference, None where it is a line or has no place yet."""
+    references = bare_cell(scene).references
+    index = scene.monocell_cell.reference_index
+    active = references[index] if 0 <= index < len(references) else None
+    return active if isinstance(active, ReferencePlane) else None
+
+
 def stored_report(scene: Any) -> Report | None:
     """The last calibration, None before one."""
     return _parsed_report(scene.monocell_cell.report)

@@ -22,6 +22,16 @@ KIND_ICONS = {
 }
 
 
+KIND_ICONS = {
+    "box": "MESH_CUBE",
+    "cylinder": "MESH_CYLINDER",
+    "sphere": "MESH_UVSPHERE",
+    "cone": "MESH_CONE",
+    "tube": "MESH_TORUS",
+    "prism": "MESH_ICOSPHERE",
+}
+
+
 class SightingList(bpy.types.UIList):
     """Sightings: whether in use, number and picture, and what the pose leaves of it in pixels."""
 
