@@ -12,6 +12,14 @@ STATUS_ICONS = {
     "doubtful": "QUESTION",
     "rejected": "CANCEL",
 }
+KIND_ICONS = {
+    "box": "MESH_CUBE",
+    "cylinder": "MESH_CYLINDER",
+    "sphere": "MESH_UVSPHERE",
+    "cone": "MESH_CONE",
+    "tube": "MESH_TORUS",
+    "prism": "MESH_DATA",
+}
 
 
 KIND_ICONS = {

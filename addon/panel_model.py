@@ -100,7 +100,9 @@ def _rows(thing):
     sigmas, place = thing.size_sigma(), thing.position_sigma()
     for i, (name, size) in enumerate(zip(thing.size_names, thing.sizes, strict=True)):
         error = "" if sigmas is None or sigmas[i] == 0 else f" ± {1e3 * sigmas[i]:.1f}"
-        yield name.replace("size_", "Size ").capitalize(), f"{1e3 * size:.1f}{error} mm"
+        yield name.replace("_", " ").capitalize(), f"{1e3 * size:.1f}{error} mm"
+    if thing.kind == "prism":
+        yield "Corners", str(len(thing.polygon))
     yield "Centre", ", ".join(f"{1e3 * x:.1f}" for x in thing.world_from_object.translation) + " mm"
     if place is not None:
         yield "± 1 sigma", ", ".join(f"{1e3 * x:.1f}" for x in place) + " mm"
