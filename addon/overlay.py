@@ -48,8 +48,10 @@ class Overlay:
         batches = [
             *self._grid_batches(scene, look),
             *self._object_batches(context, scene, look),
-            *self._ball_batches(scene, look),
         ]
+        # sightings would lie over what is picked
+        picking = context.window_manager.monocell_work.picking
+        batches += [] if picking else self._ball_batches(scene, look)
         scale = context.preferences.system.ui_scale
         with gpu.matrix.push_pop():
             gpu.matrix.translate((x, y))
@@ -58,7 +60,7 @@ class Overlay:
                 batch.draw(scale)
         from .drawing import draw_labels
 
-        _, _, labels = self._balls
+        labels = [] if picking else self._balls[2]
         points = frame.region_points([label.pixel for label in labels]) if labels else ()
         draw_labels(
             [(at, one.text, one.color) for at, one in zip(points, labels, strict=True)], scale
@@ -81,12 +83,13 @@ class Overlay:
 
     def _ball_batches(self, scene: Any, look: Settings) -> list[Any]:
         stored = scene.monocell_cell
-        key = (stored.text, stored.report, stored.sighting_index, look)
+        shown = stored.shown_picture
+        key = (stored.text, stored.report, stored.sighting_index, look, shown)
         if self._balls[0] != key:
             from .overlay_lines import sighting_labels, sighting_strokes
 
             cell, report = bare_cell(scene), stored_report(scene)
-            strokes = sighting_strokes(cell, report, stored.sighting_index, look)
+            strokes = sighting_strokes(cell, report, stored.sighting_index, look, shown)
             self._balls = key, _batches(strokes), list(sighting_labels(cell, report, look))
         return self._balls[1]
 

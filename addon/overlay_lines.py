@@ -33,6 +33,7 @@ DOUBTFUL_SHARE = 2 / 3
 OUTLINE_POINTS = 120
 LONGEST_REASON = 40
 CROSS_PIXELS = 7.0
+ELSEWHERE = 0.55
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,14 +55,25 @@ class Label:
 
 
 def sighting_strokes(
-    cell: Cell, report: Report | None, active: int, settings: Settings = DEFAULTS
+    cell: Cell,
+    report: Report | None,
+    active: int,
+    settings: Settings = DEFAULTS,
+    shown: str | None = None,
 ) -> Iterator[Stroke]:
-    """Outlines of the balls, crosses of the points, the active window and the advised places."""
+    """Outlines of the balls, crosses of the points, the active window and the advised places.
+
+    Those that belong to another picture than `shown` are fainter.
+    """
     for i, sighting in enumerate(cell.sightings):
         width = settings.line_width + (1.1 if i == active else 0.0)
         lines = _sighting_lines(cell, report, i)
-        if lines:
-            yield from haloed(lines, sighting_color(report, i, sighting.use, settings), width)
+        color = sighting_color(report, i, sighting.use, settings)
+        if lines and shown in (None, sighting.picture):
+            yield from haloed(lines, color, width)
+        elif lines:
+            # of another picture than the one that is shown
+            yield Stroke(lines, (*color[:3], ELSEWHERE * color[3]), width)
         if i == active and isinstance(sighting, SphereSighting) and sighting.window is not None:
             yield from haloed((_rectangle(cell, sighting.window),), WHITE, 1.0)
     for place in report.advice if report is not None else ():

@@ -55,7 +55,7 @@ class ModelPanel(CellPanel, bpy.types.Panel):
             rows=1,
             maxrows=2,
         )
-        tools = layout.grid_flow(row_major=True, columns=4, even_columns=True, align=True)
+        tools = layout.grid_flow(row_major=True, columns=3, even_columns=True, align=True)
         tools.scale_y = 1.2
         for tool, text, icon in TOOLS:
             tools.operator(tool.bl_idname, text=text, icon=icon)

@@ -29,7 +29,14 @@ class PicksOnPicture(OnPicture):
         sigma = scene.monocell_inputs.pick_sigma_pixels
         self._session = PickSession(self.plan, cell.camera, reference, sigma)
         self._shown = None
-        return self.begin(context, event)
+        started = self.begin(context, event)
+        context.window_manager.monocell_work.picking = "RUNNING_MODAL" in started
+        return started
+
+    def end(self, context):
+        """Let the sightings be seen again."""
+        context.window_manager.monocell_work.picking = False
+        super().end(context)
 
     def handle(self, context, area, event):
         """A pick, or a key of ours."""

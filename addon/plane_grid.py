@@ -17,12 +17,11 @@ LOOKS = (33, 25)
 # a cell of the grid is about so wide in the middle of what is seen, as a share of the picture
 CELL_SHARE = 1 / 28
 # beyond so many times the middle distance the lines run together
-FARTHEST = 2.5
+FARTHEST = 2.0
 MOST_LINES = 120
 MAJOR = 5
-# points of a line nearer to the camera than this are left out, metres
+# what of a line is nearer to the camera than this is left out, metres
 NEAREST = 0.02
-SAMPLES = 33
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,12 +45,12 @@ def plane_grid(camera: Camera, plane: ReferencePlane) -> PlaneGrid | None:
     low, high = np.floor(seen.min(axis=0) / cell), np.ceil(seen.max(axis=0) / cell)
     fine, major = [], []
     for axis in (0, 1):
-        along = np.linspace(low[1 - axis], high[1 - axis], SAMPLES) * cell
         for step in np.arange(low[axis], high[axis] + 1):
-            line = np.zeros((SAMPLES, 3))
-            line[:, axis], line[:, 1 - axis] = step * cell, along
+            line = np.zeros((2, 3))
+            line[:, axis] = step * cell
+            line[:, 1 - axis] = low[1 - axis] * cell, high[1 - axis] * cell
             into = major if step % MAJOR == 0 else fine
-            into += _parts(pinhole, plane.world_from_plane.apply(line))
+            into += _clipped(pinhole, plane.world_from_plane.apply(line))
     return PlaneGrid(tuple(fine), tuple(major), cell)
 
 
@@ -82,12 +81,26 @@ def _round(length: float) -> float:
     return float(power * steps[np.abs(np.log(steps * power / length)).argmin()])
 
 
-def _parts(pinhole: Camera, line_world: Array) -> list[Array]:
-    """The parts of a line in front of the camera, as the view shows them."""
-    ahead = pinhole.pose.apply(line_world)[:, 2] > NEAREST
-    pixels = pinhole.project(line_world)
-    inside = ahead & np.isfinite(pixels).all(axis=1)
-    ends = np.flatnonzero(np.diff(inside.astype(int))) + 1
-    parts = np.split(pixels, ends)
-    kept = np.split(inside, ends)
-    return [p for p, k in zip(parts, kept, strict=True) if len(p) > 1 and k[0]]
+def _clipped(pinhole: Camera, line_world: Array) -> list[Array]:
+    """The part of a line (2, 3) that the picture shows, its ends (2, 2); none beside it."""
+    ends = pinhole.pose.apply(line_world)
+    if (ends[:, 2] <= NEAREST).all():
+        return []
+    if (ends[:, 2] <= NEAREST).any():
+        # what is behind the camera is cut off where it passes it
+        share = (NEAREST - ends[0, 2]) / (ends[1, 2] - ends[0, 2])
+        ends[int(ends[1, 2] <= NEAREST)] = ends[0] + share * (ends[1] - ends[0])
+        ends[:, 2] = np.maximum(ends[:, 2], NEAREST)
+    first, last = pinhole.intrinsics.project(ends)
+    inner = pinhole.intrinsics
+    most = np.array([inner.width, inner.height]) - 0.5
+    way = last - first
+    with np.errstate(divide="ignore", invalid="ignore"):
+        near, far = (-0.5 - first) / way, (most - first) / way
+    # a line along a side is outside of it all along, or never
+    along = way == 0
+    if (along & ((first < -0.5) | (first > most))).any():
+        return []
+    enter = np.where(along, 0.0, np.minimum(near, far)).max(initial=0.0)
+    leave = np.where(along, 1.0, np.maximum(near, far)).min(initial=1.0)
+    return [first + np.outer([enter, leave], way)] if enter < leave else []

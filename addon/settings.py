@@ -18,7 +18,7 @@ class Settings:
     doubtful_color: Color = ORANGE
     rejected_color: Color = RED
     advice_color: Color = VIOLET
-    grid_color: Color = (0.35, 0.95, 0.95, 0.30)
+    grid_color: Color = (0.62, 0.92, 0.95, 0.28)
     line_width: float = 1.6
     snap: bool = True
     snap_radius: float = 9.0
