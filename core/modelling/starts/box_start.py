@@ -14,7 +14,7 @@ from ...sketch import Sketch
 from ..picks import RolePicks
 from ..reverse_mapping import grazing_warnings, points_on_plane
 from .base_corners import refuse_crossing, top_heights, turn_of
-from .corner_solids import corner_costs, descended_corners, has_scale, solved_corners
+from .corner_solids import corner_costs, descended_corners, grazing_base, has_scale, solved_corners
 from .counts import refuse_too_few
 from .found import Starts, known_parameters, plane_of, rivals, things_of
 from .held import Grip, Held
@@ -111,6 +111,7 @@ def _from_any(camera: Camera, sketch: Sketch, picked: Picked, held: Held, sigma:
             f"{sketch.name}: nothing tells how large it is: a box that stands nowhere needs a "
             "known size"
         )
+    grazing = grazing_base(camera, picked, held)
     for role in ("base", "top"):
         refuse_crossing(picked[role])
     turns = FREE_TURNS if not held.grips else 2 * FREE_TURNS
@@ -131,7 +132,7 @@ def _from_any(camera: Camera, sketch: Sketch, picked: Picked, held: Held, sigma:
         _refuse_negative(sketch, min(guessed, key=lambda g: g[0])[1])
     _, turn, trials, cost = min(found, key=lambda f: f[0])
     plan = corner_plan("box", picked, turn, sigma)
-    return Starts(things_of(sketch, rivals(trials, cost, sigma)), plan)
+    return Starts(things_of(sketch, rivals(trials, cost, sigma)), plan, grazing)
 
 
 def _refuse_negative(sketch: Sketch, trials: Trials) -> None:
