@@ -39,7 +39,12 @@ def read_scene(scene: Any) -> Cell:
 
     Raises InvalidValue when an object was edited out of its kind, or two share a name.
     """
-    from ..core.links import with_new_names, without_lost_joints, without_lost_relations
+    from ..core.links import (
+        references_kept,
+        with_new_names,
+        without_lost_joints,
+        without_lost_relations,
+    )
     from ..scene.objects import built_name, is_modelled, read_object
 
     cell = bare_cell(scene)
@@ -55,8 +60,10 @@ def read_scene(scene: Any) -> Cell:
     things, composites = with_new_names([*objects, *cell.sketches], cell.composites, renamed)
     things, composites, _ = without_lost_joints(things, composites)
     things, _ = without_lost_relations(things, {r.name for r in cell.references})
+    names = {thing.name for thing in things}
     return replace(
         cell,
+        references=references_kept(cell.references, renamed, names),
         objects=things[: len(objects)],
         sketches=things[len(objects) :],
         composites=composites,

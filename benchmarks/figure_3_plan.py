@@ -146,7 +146,7 @@ def _arm() -> list[Primitive]:
 
 
 def _balls() -> list[Primitive]:
-    ball = Sphere("ball", Pose(np.eye(3), np.array([1.05, 0.30, 0.62])), radius=0.06)
+    ball = Sphere("ball", Pose(np.eye(3), np.array([0.95, 0.62, 0.86])), radius=0.06)
     small = Sphere("small ball", Pose(np.eye(3), np.array([0.30, -0.75, 0.72])), radius=0.045)
     return [_coloured(ball, (0.75, 0.70, 0.62)), _coloured(small, (0.60, 0.05, 0.10))]
 

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every way of picking every kind, on random objects: how often the right answer, how good, how soon.
+"""Every way of picking every kind, on random objects: how often right, how good, how soon.
 
     python benchmarks/pick_ways.py [--objects 500] [--sigma 1] [--only cylinder]
 
 `right` ends where a fit that starts from the truth ends, or lower beside it; `other` fits the same
-picks no worse elsewhere (they can't tell), `wrong` is worse or nothing. `size` is the median error of all sizes in
-percent, `covered` how often the 95 % ellipsoid of the solved sizes holds the true ones. `untold` are
-answers that are not right and have no word of a rival. `ms` are milliseconds of the processor for
-the whole of it: reading, all starts, all fits, the choice.
+picks no worse elsewhere (they can't tell), `wrong` is worse or nothing. `size` is the median error
+of all sizes in percent, `covered` how often the 95 % ellipsoid of the solved sizes holds the true
+ones. `untold` are answers that are not right and have no word of a rival. `ms` are milliseconds of
+the processor for the whole of it: reading, all starts, all fits, the choice.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from pick_way_table import WAYS, Way
 # fits within this much chi squared of the best fit as well
 ALIKE = 4.0
 SAME_SHARE = 1e-3
+HEADS = ("way", "right %", "other %", "wrong %", "size %", "covered %", "untold", "ms", "95 % ms")
 # of a normal distribution, one side: 99.9 %
 SURE = 3.0902
 
@@ -62,8 +63,7 @@ def main() -> None:
                 for i, o in enumerate(outcomes):
                     if o.verdict != "right":
                         print(f"  {i}: {o.verdict} {o.told}")
-    heads = ("way", "right %", "other %", "wrong %", "size %", "covered %", "untold", "ms", "95 % ms")
-    print(table(heads, rows))
+    print(table(HEADS, rows))
 
 
 def _row(way: Way, outcomes: list[Outcome]) -> tuple[str, ...]:

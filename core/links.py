@@ -8,17 +8,19 @@ in Blender or in another program's glTF, what named them has to follow, or to le
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any, TypeVar
 
 from .cell import feature_owner
 from .composite import Composite
 from .motion import Motion
 from .primitives import Primitive
+from .reference import PendingReference, Reference
 from .relation import RELATIONS, Relation
 from .sketch import Sketch
 
 Thing = TypeVar("Thing", Primitive, Sketch, Primitive | Sketch)
+AnyReference = Reference | PendingReference
 STILL = Motion()
 
 
@@ -91,6 +93,44 @@ def without_lost_relations(
         warnings += [f"{thing.name}: {name} held it, which is not there any more" for name in lost]
         kept.append(_changed(thing, relations=relations, on=on) if lost else thing)
     return tuple(kept), tuple(warnings)
+
+
+def references_kept(
+    references: Sequence[AnyReference], names: Mapping[str, str], there: Collection[str]
+) -> tuple[AnyReference, ...]:
+    """References made from objects: renamed ones followed, and where one is gone the place kept.
+
+    `names` are old to new; `there` are the names of the objects that are there now.
+    """
+    known = {reference.name for reference in references}
+    return tuple(_source_kept(reference, names, known, there) for reference in references)
+
+
+def _source_kept(
+    reference: AnyReference,
+    names: Mapping[str, str],
+    known: Collection[str],
+    there: Collection[str],
+) -> AnyReference:
+    source = reference.source
+    if source is None or not source.needs:
+        return reference
+    moved = {
+        field.name: _names_followed(getattr(source, field.name), names) for field in fields(source)
+    }
+    source = replace(source, **moved)
+    lost = not all(_leads(name, known, there) for name in source.needs)
+    if lost and not isinstance(reference, PendingReference):
+        return replace(reference, source=None)
+    return replace(reference, source=source)
+
+
+def _names_followed(value: Any, names: Mapping[str, str]) -> Any:
+    if isinstance(value, str):
+        return _followed(value, names)
+    if isinstance(value, tuple):
+        return tuple(_names_followed(v, names) for v in value)
+    return value
 
 
 def _changed(thing: Thing, **changes: Any) -> Thing:

@@ -8,8 +8,14 @@ import pytest
 from monocell.core import Box, Camera, Cell, Composite, Intrinsics, Motion, Pose, Relation
 from monocell.core.bodies import rigid_bodies
 from monocell.core.errors import InvalidValue
-from monocell.core.links import with_new_names, without_lost_joints, without_lost_relations
-from monocell.core.reference import ReferencePlane
+from monocell.core.links import (
+    references_kept,
+    with_new_names,
+    without_lost_joints,
+    without_lost_relations,
+)
+from monocell.core.reference import PendingReference, ReferenceLine, ReferencePlane
+from monocell.core.references.sources import FeatureOf, Intersection
 from monocell.core.shape.masses import masses
 from monocell.core.sketch import Sketch
 
@@ -215,6 +221,21 @@ def test_what_is_deleted_is_let_go_of_with_a_word_for_each():
     whole, groups, none = without_lost_joints((HELD, *OTHERS), (GROUP,))
     assert (whole[0], groups[0].parts, none) == (HELD, GROUP.parts, ())
     assert without_lost_relations((HELD, *OTHERS), {"floor"})[1] == ()
+
+
+def test_a_reference_made_from_an_object_follows_its_name_and_keeps_its_place_when_it_goes():
+    made = ReferencePlane("lid", [0, 0, 1], [0, 0, 1], source=FeatureOf("crate.top"))
+    between = ReferenceLine("seam", [0, 0, 1], [1, 0, 0], source=Intersection(("crate.top", "lid")))
+    pending = PendingReference("rim", "line", FeatureOf("crate.axis"))
+    references = (made, between, pending)
+    lid, seam, rim = references_kept(references, {"crate": "box.001"}, {"box.001"})
+    assert lid.source.of == "box.001.top" and rim.source.of == "box.001.axis"
+    assert seam.source.needs == ("box.001.top", "lid")
+    lid, seam, rim = references_kept(references, {}, {"other"})
+    assert lid.source is None and seam.source is None and lid.point.tolist() == [0, 0, 1]
+    # what never had a place can't keep one
+    assert rim.source.of == "crate.axis"
+    assert references_kept(references, {}, {"crate"})[0].source.of == "crate.top"
 
 
 @pytest.mark.parametrize(
