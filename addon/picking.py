@@ -26,9 +26,17 @@ class PicksOnPicture(OnPicture):
             self.report({"ERROR"}, f"{reference.name} is a line; choose a plane to stand things on")
             return {"CANCELLED"}
         self.on = reference.name
-        self._session = PickSession(self.plan, cell.camera, reference)
+        sigma = scene.monocell_inputs.pick_sigma_pixels
+        self._session = PickSession(self.plan, cell.camera, reference, sigma)
         self._shown = None
-        return self.begin(context, event)
+        started = self.begin(context, event)
+        context.window_manager.monocell_work.picking = "RUNNING_MODAL" in started
+        return started
+
+    def end(self, context):
+        """Let the sightings be seen again."""
+        context.window_manager.monocell_work.picking = False
+        super().end(context)
 
     def handle(self, context, area, event):
         """A pick, or a key of ours."""
@@ -36,32 +44,41 @@ class PicksOnPicture(OnPicture):
             return None
         picked, more = False, event.shift
         if event.type == "LEFTMOUSE":
-            pixel = self.pixel(context, area)
+            aim = self.aim(context, area)
             # what can't be the object is not taken; the words beside the cursor say why
-            if pixel is not None and not self._preview(pixel).complaint:
-                self._session, picked = self._session.picked(pixel), True
+            if aim is not None and not self._preview(aim.pixel).complaint:
+                self._session, picked = self._session.picked(aim.pixel), True
         elif event.type == "BACK_SPACE":
             self._session = self._session.taken_back()
-        if (picked and self._session.complete and not more) or event.type in CONFIRM_EVENTS:
+        confirmed = event.type in CONFIRM_EVENTS
+        if confirmed and self._session.open:
+            self._session, confirmed = self._session.advanced(), False
+        ended = picked and self._session.complete and (self._session.full or not more)
+        if ended or confirmed:
             return self._finish(context)
         self._shown = None
         return None
 
     def paint(self, context, frame):
         """The object as it would be with a click at the cursor."""
-        from .pick_drawing import draw_session
+        from .pick_drawing import draw_preview, draw_prompt
 
-        preview = self._preview(self.pixel(context, context.area))
-        draw_session(context, frame, self._session, preview, self.cursor)
+        aim = self.aim(context, context.area)
+        preview = self._preview(None if aim is None else aim.pixel)
+        scale = context.preferences.system.ui_scale
+        draw_preview(frame, self._session, preview, self.settings, scale)
+        lines = [(line.pixels, self.settings.object_color) for line in preview.lines]
+        snapped = self.paint_aim(context, frame, lines)
+        draw_prompt(context, self._session, preview, snapped, self.cursor)
 
     def keys(self):
         """What the status bar tells."""
         return (
             ("MOUSE_LMB", f"{self.plan.kind.capitalize()} on {self.on}: {self._session.prompt}"),
             # the signs of long keys reach beyond the room that Blender gives an icon
-            ("EVENT_SHIFT", "    with a click: more points of the top"),
+            ("EVENT_SHIFT", "    with a click: one more"),
             ("EVENT_BACKSPACE", "    Take back"),
-            ("EVENT_RETURN", "    Done"),
+            ("EVENT_RETURN", "    Next" if self._session.open else "    Done"),
             ("EVENT_ESC", "   Cancel"),
         )
 

@@ -65,6 +65,11 @@ def is_modelled(ob: Any) -> bool:
     return ob.type == "MESH" and ENTRY in ob
 
 
+def built_name(ob: Any) -> str:
+    """The name in the document that a modelled object was built with."""
+    return str(ob[ENTRY]["name"])
+
+
 def fill_object(ob: Any, thing: Primitive) -> None:
     """Give an object the mesh, colour, place and entry of `thing`."""
     fill_mesh(ob.data, tessellated(thing))

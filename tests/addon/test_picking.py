@@ -4,10 +4,22 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from monocell.addon.pick_plan import BOX, CYLINDER, corner_below
+from monocell.addon.pick_plan import (
+    BOX,
+    CONE,
+    CYLINDER,
+    FRUSTUM,
+    PRISM,
+    SPHERE,
+    TUBE,
+    corner_below,
+)
 from monocell.addon.pick_session import PickSession
 from monocell.addon.picture_frame import PictureFrame
+from monocell.core import Cone, Pose, Tube
+from monocell.core.modelling.solve import solve_sketch
 from monocell.core.picture.undistortion import undistorted_picture
+from monocell.core.sketch import Sketch
 
 CORNERS = bench_cell.CAMERA.project(bench_cell.BOX.corners_world())
 BASE = CORNERS[bench_cell.ROUND]
@@ -28,8 +40,9 @@ def sizes_in(words):
 
 @pytest.mark.parametrize("corner", range(4))
 def test_a_top_pick_belongs_to_the_base_corner_below_it(corner):
-    found = corner_below(bench_cell.CAMERA, bench_cell.FLOOR, BASE, TOPS[corner] + [3.0, 1.0])
-    assert found == corner
+    corners = bench_cell.BOX.corners_world()[[0, 1, 3, 2]]
+    pixel = TOPS[corner] + np.array([3.0, 1.0])
+    assert corner_below(bench_cell.CAMERA, bench_cell.FLOOR, corners, pixel, -1) == corner
 
 
 def test_the_box_that_is_shown_is_the_true_one():
@@ -50,9 +63,10 @@ def test_the_cylinder_that_is_shown_is_the_true_one():
 
 def test_the_point_under_the_cursor_is_told_in_metres():
     corner = bench_cell.BOX.corners_world()[0]
-    assert session(BOX).preview(BASE[0]).words == "x {:.3f}   y {:.3f}   z 0.000 m".format(
-        *corner[:2]
-    )
+    words = session(BOX).preview(BASE[0]).words
+    assert words.startswith("x {:.3f}   y {:.3f}   z 0.000 m   ± ".format(*corner[:2]))
+    # a pixel there is about 2 mm, and longer along the view
+    assert 1.0 < float(words.split()[-2]) < 8.0
 
 
 def test_from_the_second_corner_on_the_base_is_drawn():
@@ -77,7 +91,7 @@ def test_beside_the_picture_nothing_is_drawn():
 def test_taking_back_forgets_the_last_pick_only():
     picked = session(BOX, *BASE)
     assert picked.taken_back().picks() == session(BOX, *BASE[:2]).picks()
-    assert session(BOX).taken_back().pixels == ()
+    assert session(BOX).taken_back().pixels == ((), ())
 
 
 def test_more_top_picks_are_all_kept():
@@ -89,6 +103,71 @@ def test_more_top_picks_are_all_kept():
     ]
     picks = bench_cell.drum_picks(tops=2)
     assert session(CYLINDER, *picks["rim"], *picks["top"]).picks() == picks
+
+
+def rim_pixels(thing, level, angles):
+    """Pixels of points of a rim, at angles from the side that faces the camera."""
+    eye = bench_cell.POSE.inverse().translation - thing.world_from_object.translation
+    turned = np.arctan2(eye[1], eye[0]) + np.array(angles)
+    radius = level[0]
+    points = np.stack([radius * np.cos(turned), radius * np.sin(turned)], 1)
+    points = np.column_stack([points, np.full(len(points), level[1])])
+    return bench_cell.CAMERA.project(thing.world_from_object.apply(points))
+
+
+def solved(plan, *pixels):
+    picked = session(plan, *pixels)
+    assert picked.complete
+    sketch = Sketch("x", plan.kind, "floor", picked.picks())
+    return solve_sketch(bench_cell.CAMERA, sketch, [bench_cell.FLOOR]).object
+
+
+UPRIGHT = Pose(np.eye(3), [0.36, 0.05, 0.08])
+
+
+def test_cone_frustum_and_tube_are_picked_as_their_plans_say():
+    foot = [-1.3, 0.0, 1.3]
+    cone = Cone("c", UPRIGHT, radius=0.06, top_radius=0.0, height=0.16)
+    apex = bench_cell.CAMERA.project(UPRIGHT.apply(np.array([[0, 0, 0.08]])))
+    found = solved(CONE, *rim_pixels(cone, (0.06, -0.08), foot), *apex)
+    assert found.sizes == pytest.approx([0.06, 0, 0.16], abs=1e-6)
+    top = rim_pixels(cone, (0.03, 0.08), foot)
+    found = solved(FRUSTUM, *rim_pixels(cone, (0.06, -0.08), foot), *top)
+    assert found.sizes == pytest.approx([0.06, 0.03, 0.16], abs=1e-5)
+    tube = Tube("t", UPRIGHT, radius=0.06, inner_radius=0.04, height=0.16)
+    pixels = [
+        *rim_pixels(tube, (0.06, -0.08), foot),
+        *rim_pixels(tube, (0.06, 0.08), [0.2]),
+        *rim_pixels(tube, (0.04, 0.08), [2.5]),
+    ]
+    assert solved(TUBE, *pixels).sizes == pytest.approx([0.06, 0.04, 0.16], abs=1e-5)
+
+
+def test_a_ball_on_the_reference_is_picked_by_its_outline():
+    from monocell.core.ball.sphere import outline_pixels
+
+    centre = bench_cell.POSE.apply(np.array([0.4, 0, 0.05]))
+    pixels = outline_pixels(bench_cell.INTRINSICS, centre, 0.05, 12)
+    found = solved(SPHERE, *pixels[[0, 4, 8]])
+    assert found.radius == pytest.approx(0.05, abs=1e-6)
+
+
+def test_a_prism_takes_any_number_of_corners_and_enter_ends_its_base():
+    floor = [[0.3, -0.1], [0.42, -0.1], [0.45, 0.02], [0.36, 0.08], [0.28, 0.0]]
+    base = np.column_stack([floor, np.zeros(5)])
+    pixels = bench_cell.CAMERA.project(base)
+    picking = session(PRISM, *pixels)
+    assert not picking.complete and picking.open and picking.step.role == "base"
+    assert "another base corner" in picking.prompt
+    raised = bench_cell.CAMERA.project(base + np.array([0, 0, 0.1]))
+    picking = picking.advanced().picked(raised[1])
+    assert picking.complete
+    assert [pick is None for pick in picking.picks()["top"]] == [True, False, True, True, True]
+    sketch = Sketch("x", "prism", "floor", picking.picks())
+    found = solve_sketch(bench_cell.CAMERA, sketch, [bench_cell.FLOOR]).object
+    assert found.height == pytest.approx(0.1, abs=1e-6)
+    # taking back leads over the step into the one before
+    assert picking.taken_back().taken_back().step.role == "base"
 
 
 FRAME = PictureFrame(-35.25, 12.5, 1004.75, 792.5, bench_cell.INTRINSICS)

@@ -15,6 +15,7 @@ from ..picks import RolePicks
 from ..reverse_mapping import grazing_warnings, points_on_plane
 from .base_corners import refuse_crossing, top_heights, turn_of
 from .corner_solids import corner_costs, descended_corners, has_scale, solved_corners
+from .counts import refuse_too_few
 from .found import Starts, known_parameters, plane_of, rivals, things_of
 from .held import Grip, Held
 from .orientations import orientations
@@ -41,6 +42,7 @@ def box_starts(
                 f"{sketch.name}: {role}[{picked[role].places[-1]}] is a fifth corner; a box has "
                 "four round its base"
             )
+    refuse_too_few(sketch, picked, held, known_parameters(sketch, held))
     standing = held.standing
     if standing is not None and standing.flush == "base" and len(picked["base"]) >= 3:
         return _from_base(camera, sketch, picked, held, standing, sigma_pixels)
@@ -106,8 +108,8 @@ def _from_any(camera: Camera, sketch: Sketch, picked: Picked, held: Held, sigma:
     known = known_parameters(sketch, held)
     if not has_scale(held, known):
         raise PickError(
-            f"{sketch.name}: nothing tells how large it is: a box that stands nowhere needs a known "
-            "size"
+            f"{sketch.name}: nothing tells how large it is: a box that stands nowhere needs a "
+            "known size"
         )
     for role in ("base", "top"):
         refuse_crossing(picked[role])
@@ -139,6 +141,6 @@ def _refuse_negative(sketch: Sketch, trials: Trials) -> None:
         raise PickError(f"{sketch.name}: no box in front of the camera comes near these picks")
     raise PickError(
         f"{sketch.name}: the picks fit best with a {Box.size_names[worst]} of "
-        f"{1e3 * sizes[worst]:.1f} mm; check that top is above base, and the side the normal points "
-        "to"
+        f"{1e3 * sizes[worst]:.1f} mm; check that top is above base, and the side the normal "
+        "points to"
     )

@@ -7,7 +7,7 @@ derivatives: springs that bring a start near to where the exact equations take o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,7 @@ import numpy as np
 from ...arrays import Array
 from ...primitives import Primitive
 from ...relation import Relation
+from ...rotation import hat
 from ...shape.features import Feature
 from ...sketch import Sketch
 from ..holding import PLACING, References, as_feature, holds_of
@@ -24,7 +25,6 @@ from .trials import Trials
 
 # a milliradian (or its length at the object) off its relations costs as much as 30 of a pick
 STIFFNESS = 30.0
-# what `parallel` and `flush` leave of a turn, `perpendicular` and `lies_on` half of it
 ROUND = ("cylinder", "cone", "tube")
 
 
@@ -109,8 +109,7 @@ def _flush(held: Held, grip: Grip, trials: Trials) -> Rows:
     gaps = _gaps(trials.points(part.spans), grip.to)
     if part.direction is None:
         return gaps, _none(trials)
-    turned = np.cross(trials.rotation @ part.direction, grip.to.direction)
-    return gaps, turned
+    return gaps, trials.rotation @ part.direction @ hat(grip.to.direction)
 
 
 def _lies(held: Held, grip: Grip, trials: Trials) -> Rows:
@@ -167,8 +166,7 @@ def _touches_line(trials: Trials, line: Feature) -> Array:
 
 
 def _parallel(held: Held, grip: Grip, trials: Trials) -> Rows:
-    turned = np.cross(trials.rotation @ _direction(held, grip), grip.to.direction)
-    return _none(trials), turned
+    return _none(trials), trials.rotation @ _direction(held, grip) @ hat(grip.to.direction)
 
 
 def _perpendicular(held: Held, grip: Grip, trials: Trials) -> Rows:
@@ -181,7 +179,7 @@ def _centred(held: Held, grip: Grip, trials: Trials) -> Rows:
     gap = trials.points(part.by[None])[:, 0] - grip.to.point
     if grip.to.kind == "point":
         return gap, _none(trials)
-    return np.cross(gap, grip.to.direction), _none(trials)
+    return gap @ hat(grip.to.direction), _none(trials)
 
 
 def _gaps(points: Array, plane: Feature) -> Array:
@@ -207,8 +205,3 @@ ROWS: dict[str, Callable[[Held, Grip, Trials], Rows]] = {
     "perpendicular": _perpendicular,
     "centred_on": _centred,
 }
-
-
-def turns_left(held: Held) -> Sequence[str]:
-    """Kinds of all grips, for messages."""
-    return [grip.kind for grip in held.grips]

@@ -12,11 +12,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...arrays import Array
+from ...rotation import hat
 from .trials import Trials
 
 HEIGHT = {"cylinder": 1, "cone": 2, "tube": 2}
 # of a cylinder both ends have its one radius
 TOP_RADIUS = {"cylinder": 0, "cone": 1, "tube": 0}
+# radii beyond this share of the distance are doubted, by so many pixels for every such share
+LARGE, GENTLE = 0.3, 3.0
 
 
 def _no_rays() -> Array:
@@ -49,7 +52,7 @@ class Seen:
             return self.focal * self._outline(trials)
         parts = [self._points(trials)] if len(self.points) else []
         if self.kind in HEIGHT:
-            parts += self._round(trials)
+            parts += [*self._round(trials), self._too_large(trials)]
         return self.focal * np.concatenate(parts, axis=1)
 
     def facing(self, trials: Trials) -> Array:
@@ -60,8 +63,8 @@ class Seen:
 
     def _points(self, trials: Trials) -> Array:
         sight = trials.points(self.by) - self.origin
-        away = np.linalg.norm(sight, axis=2, keepdims=True)
-        missed = np.cross(sight, self.points) / away
+        away = np.sqrt((sight**2).sum(axis=2, keepdims=True))
+        missed = (sight[:, :, None] @ hat(self.points))[:, :, 0] / away
         behind = (sight * self.points).sum(axis=2) <= 0
         missed[behind] = np.inf
         return missed.reshape(len(trials), 3 * len(self.points))
@@ -82,19 +85,27 @@ class Seen:
             parts.append(self._sides(trials, radius, top))
         return parts
 
+    def _too_large(self, trials: Trials) -> Array:
+        """A gentle push back from radii that only picks which tell nothing would make so large."""
+        away = np.linalg.norm(trials.place - self.origin, axis=1)
+        share = np.abs(trials.parameters[:, 0]) / away / LARGE
+        push: Array = GENTLE / self.focal * np.maximum(share - 1.0, 0.0)[:, None]
+        return push
+
     def _ring(self, trials: Trials, end: Array, radius: Array, rays: Array) -> Array:
         """Angles (M, N) between rays and the circle round an end, across its image."""
         axis = trials.rotation[:, :, 2]
         level = (end * trials.parameters[:, HEIGHT[self.kind]] / 2)[:, None]
         centre = trials.place + level * axis - self.origin
         along = axis @ rays.T
+        # the way round the circle times the distance from its centre, as far as it is along a ray
+        square = (hat(axis) @ centre[:, :, None])[:, :, 0] @ rays.T
         with np.errstate(divide="ignore", invalid="ignore"):
             depth = (centre * axis).sum(axis=1)[:, None] / along
-            out = depth[:, :, None] * rays - centre[:, None]
-            away = np.sqrt((out**2).sum(axis=2))
-            # the way round the circle, foreshortened as seen
-            around = np.cross(axis[:, None], out) / away[:, :, None]
-            turned = np.sqrt(np.maximum(1 - (around * rays).sum(axis=2) ** 2, 1e-12))
+            away2 = depth * (depth - 2 * centre @ rays.T) + (centre**2).sum(axis=1)[:, None]
+            away = np.sqrt(np.maximum(away2, 1e-18))
+            # foreshortened as seen
+            turned = np.sqrt(np.maximum(1 - (square / away) ** 2, 1e-12))
             missed = (away - radius[:, None]) * np.abs(along) / (depth * turned)
         return np.where(depth > 0, missed, np.inf)
 
@@ -115,7 +126,10 @@ class Seen:
             depth = nearest - lean * away / (flat * level)
             out = away * level + slope * (eye[:, :, 2] + nearest * rays[:, :, 2])
             missed = (out - ((radius + top) / 2)[:, None]) / (depth * np.sqrt(1 + slope**2))
-        return np.where(depth > 0, missed, np.inf)
+        # from inside the endless cone, or from over its point, no side is seen edge-on
+        reach = np.abs((radius + top) / 2 - slope[:, 0] * eye[:, 0, 2])
+        shown = reach < np.hypot(eye[:, 0, 0], eye[:, 0, 1])
+        return np.where((depth > 0) & shown[:, None], missed, np.inf)
 
     def _outline(self, trials: Trials) -> Array:
         sight = trials.place - self.origin
