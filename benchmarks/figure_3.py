@@ -118,9 +118,9 @@ def _write(out: Path, truth: Cell, picked: Cell, solved: Cell) -> None:
     picture, true_aside = _rendered(truth.objects, [camera(), other_side()])
     (aside,) = _rendered(solved.objects, [other_side()])
     write_picture(out / "figure_3.png", picture)
-    write_picture(out / "wire_frames.png", draw_overlay(picture, solved.camera, solved.objects))
+    write_picture(out / "figure_3_wires.jpg", draw_overlay(picture, solved.camera, solved.objects))
     both = np.hstack([_titled(true_aside, "the scene"), _titled(aside, "the model")])
-    write_picture(out / "other_side.png", both)
+    write_picture(out / "figure_3_other_side.jpg", both)
 
 
 def _rendered(things: tuple[Primitive, ...], cameras: list[Camera]) -> list[np.ndarray]:
