@@ -60,7 +60,7 @@ def camera() -> Camera:
 def other_side() -> Camera:
     """Another place to look from, on the other side of the arm, with a perfect lens."""
     intrinsics = Intrinsics(960, 720, 900.0, 900.0, 479.5, 359.5)
-    return Camera(intrinsics, Pose.looking_at([1.9, 1.9, 1.35], [0.2, 0.0, 0.42], UP))
+    return Camera(intrinsics, Pose.looking_at([1.3, 1.95, 1.6], [0.25, 0.0, 0.42], UP))
 
 
 def work_cell(things: tuple[Primitive, ...]) -> WorkCell:
