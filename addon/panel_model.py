@@ -4,6 +4,7 @@
 import bpy
 
 from .document import bare_cell, has_cell
+from .lengths import length, lengths
 from .lists import ObjectList, ReferenceList
 from .operators.add_box import AddBox
 from .operators.add_cone import AddCone
@@ -14,6 +15,7 @@ from .operators.add_sphere import AddSphere
 from .operators.add_tube import AddTube
 from .operators.solve_again import SolveAgain
 from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
+from .preferences import settings
 from .steps import count_objects, model_step
 
 TOOLS = (
@@ -93,17 +95,17 @@ def _draw_sizes(layout, context):
     except MonocellError as error:
         paragraph(layout, context, str(error), "ERROR")
         return
-    numbers(layout, _rows(thing))
+    numbers(layout, _rows(thing, settings(context).unit))
 
 
-def _rows(thing):
+def _rows(thing, unit):
     sigmas, place = thing.size_sigma(), thing.position_sigma()
     for i, (name, size) in enumerate(zip(thing.size_names, thing.sizes, strict=True)):
-        error = "" if sigmas is None or sigmas[i] == 0 else f" ± {1e3 * sigmas[i]:.1f}"
-        yield name.replace("_", " ").capitalize(), f"{1e3 * size:.1f}{error} mm"
+        sigma = None if sigmas is None else float(sigmas[i])
+        yield name.replace("_", " ").capitalize(), length(float(size), unit, sigma)
     if thing.kind == "prism":
         yield "Corners", str(len(thing.polygon))
-    yield "Centre", ", ".join(f"{1e3 * x:.1f}" for x in thing.world_from_object.translation) + " mm"
+    yield "Centre", lengths(thing.world_from_object.translation, unit)
     if place is not None:
-        yield "± 1 sigma", ", ".join(f"{1e3 * x:.1f}" for x in place) + " mm"
+        yield "± 1 sigma", lengths(place, unit)
     yield "Stands on", thing.on or "nothing named"

@@ -43,9 +43,7 @@ def test_a_cylinder_lies_on_the_floor(yaw):
 def test_the_shoulder_lies_across_the_trunk():
     trunk = Cylinder("trunk", standing(FLOOR, 0.5), radius=0.06, height=0.5)
     at = turned(Pose(np.eye(3), trunk.world_from_object.apply([0, 0, 0.2])), (np.pi / 2, 0.6, 0))
-    truth = cylinder(at, 0.05, 0.3)
     relations = [Relation("perpendicular", "trunk.axis"), Relation("centred_on", "trunk.axis")]
-    assert abs(at.rotation[2, 2]) < 1e-9 or True
     truth = cylinder(_level(at), 0.05, 0.3)
     picks = shown(truth, rim=4, top=3, sides=2)
     assert_same(solved(truth, picks, {"trunk": trunk}, relations=relations), truth)

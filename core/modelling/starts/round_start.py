@@ -23,7 +23,7 @@ from .standing_round import StandingRays, cones_on, cylinders_on
 from .trials import Trials, best, costs, descended, distinct
 
 # of all guesses so many are descended, in so many steps
-STANDING_DESCENTS, STANDING_STEPS = {"cylinder": 6, "tube": 8, "cone": 24}, 10
+STANDING_DESCENTS, CLOSED_FORM_DESCENTS, STANDING_STEPS = 24, 6, 10
 DESCENTS, STEPS, LAST_DESCENTS, LAST_STEPS = 24, 6, 6, 20
 WALL, THINNEST = 0.75, 0.97
 # an end whose axis is nearer than this (a sine) to square to the sight is seen edge-on
@@ -89,8 +89,9 @@ def _standing(
         return _nothing(held)
     guesses = _placed(plane, shapes, on_base)
     free = np.array([False] * 3 + [True] * 3 + [i not in known for i in range(held.parameters)])
-    chosen = best(guesses, misfit, STANDING_DESCENTS[held.kind])
-    return descended(chosen, misfit, free, STANDING_STEPS)
+    closed_form = held.kind != "cone" and len(rays.near) >= 3
+    descents = CLOSED_FORM_DESCENTS if closed_form else STANDING_DESCENTS
+    return descended(best(guesses, misfit, descents), misfit, free, STANDING_STEPS)
 
 
 def _elsewhere(
