@@ -26,6 +26,7 @@ VERBS = {
     "find": "the ball in a picture: its centre in the camera frame with 1 sigma",
     "calibrate": "ball sightings to the camera's pose",
     "model": "picked pixels to metric objects",
+    "propose": "boxes and cylinders that may stand on a plane, for you to accept",
     "map": "pixels to points of a reference plane or line, with their errors",
     "appearance": "colours and textures of the objects, from the picture",
     "export": "the virtual environment as glTF",

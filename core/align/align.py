@@ -60,8 +60,20 @@ def align(
     reach = positive(reach_pixels, "reach_pixels")
     check_size(picture_bgr, camera.intrinsics, "the picture")
     wanted = _wanted(things, names)
+    return align_in(PictureSight.of(picture_bgr), things, camera, references, wanted, reach)
+
+
+def align_in(
+    sight: PictureSight,
+    things: Sequence[Primitive],
+    camera: Camera,
+    references: Iterable[Reference],
+    wanted: Collection[str],
+    reach_pixels: float,
+) -> Aligned:
+    """`align` in a picture that has been looked at already."""
     known = {reference.name: reference for reference in references}
-    work = _Work(list(things), camera, PictureSight.of(picture_bgr), known, reach)
+    work = _Work(list(things), camera, sight, known, reach_pixels)
     before = in_front(things, camera)
     away = [float(np.linalg.norm(camera.pose.apply(_place(thing)))) for thing in things]
     for i in nearest_first(before, away):
@@ -82,17 +94,14 @@ class _Work:
 
     def __post_init__(self) -> None:
         self.tried: dict[str, Tried] = {}
+        self.hulls = [hull_of(Solid.of(thing), self.camera) for thing in self.now]
+        self.about: dict[int, Picture] = {}
 
     def align(self, i: int, before: set[int]) -> None:
         """One object, after those before it."""
         thing = self.now[i]
-        hulls = [hull_of(Solid.of(other), self.camera) for other in self.now]
-        front = self._filled([hulls[j] for j in sorted(before)])
-        others = [
-            cv2.blur(self._filled([hull]).astype(np.float32), ROUGHLY)
-            for j, hull in enumerate(hulls)
-            if j != i and j not in before and hull is not None
-        ]
+        front = self._filled([self.hulls[j] for j in sorted(before)])
+        others = [self._about(j) for j in range(len(self.now)) if j != i and j not in before]
         around = Surroundings(cv2.dilate(front, COVER), others)
         freedom = Freedom.of(thing, self.now, self.references)
         tried = align_one(
@@ -107,6 +116,8 @@ class _Work:
         self.tried[thing.name] = tried
         if tried.fit is not None:
             self.now[i] = tried.fit.solid.applied(thing)
+            self.hulls[i] = hull_of(tried.fit.solid, self.camera)
+            self.about.pop(i, None)
 
     def finished(self, given: Sequence[Primitive]) -> Aligned:
         """The believed objects fitted with all that holds them; the others as they were given."""
@@ -122,10 +133,16 @@ class _Work:
             tried = self.tried[thing.name]
             reasons = tried.verdict.reasons + failed.get(thing.name, ())
             final = fitted.get(thing.name)
-            told = _told(thing, tried.fit, final, reasons)
+            told = _told(thing, tried, final, reasons)
             objects[thing.name] = told
             things.append(told.thing)
         return Aligned(tuple(things), objects)
+
+    def _about(self, j: int) -> Picture:
+        """Where an object may be, (H, W), from 0 to 255: its place is known roughly."""
+        if j not in self.about:
+            self.about[j] = cv2.blur(255 * self._filled([self.hulls[j]]), ROUGHLY)
+        return self.about[j]
 
     def _filled(self, hulls: Sequence[Array | None]) -> Picture:
         return filled(self.sight.encoded.shape, [hull for hull in hulls if hull is not None])
@@ -167,9 +184,10 @@ def _solved(
 
 
 def _told(
-    given: Primitive, fit: EdgeFit | None, final: Primitive | None, reasons: tuple[str, ...]
+    given: Primitive, tested: Tried, final: Primitive | None, reasons: tuple[str, ...]
 ) -> AlignedObject:
     """What is said of one object that was tried."""
+    fit = tested.fit
     if fit is None:
         return AlignedObject(given, None, False, reasons)
     tried = replace(final or fit.solid.applied(given), picks=given.picks)
@@ -188,6 +206,7 @@ def _told(
         _rms(residual),
         float(np.median(np.abs(residual))) if len(residual) else 0.0,
         supported_share(fit),
+        tested.texture,
     )
 
 

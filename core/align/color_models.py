@@ -68,14 +68,14 @@ def evidence(colors: Colors, inside: Picture, others: Sequence[Picture], asked: 
     weights: Array = asked.ravel()
     parts = [np.clip(other.ravel(), 0.0, 1.0) for other in others]
     ground = np.maximum(1 - np.sum(parts, axis=0), 0.02) if parts else np.ones(len(prior))
-    shadow = _shadow(colors.light, (prior < GROUND) & (ground * weights > 0.5))
+    shadow = in_shadow(colors.light, (prior < GROUND) & (ground * weights > 0.5))
     share: Array = prior
     ratio: Array = np.zeros(len(prior))
     for _ in range(ROUNDS):
-        own = _histogram(colors.cells, share * weights)
+        own = histogram(colors.cells, share * weights)
         rest = np.full(len(prior), 1e-12)
         for part in [ground, *parts]:
-            rest += part * _histogram(colors.cells, (1 - share) * weights * part)[colors.cells]
+            rest += part * histogram(colors.cells, (1 - share) * weights * part)[colors.cells]
         ratio = np.clip(np.log(own[colors.cells] / rest), -LOUDEST, LOUDEST)
         ratio = np.where(ratio > 0, ratio * (1 - shadow), ratio)
         share = 1 / (1 + (1 - prior) / prior * np.exp(-ratio))
@@ -83,14 +83,15 @@ def evidence(colors: Colors, inside: Picture, others: Sequence[Picture], asked: 
     return loud
 
 
-def _shadow(light: Array, ground: NDArray[np.bool_]) -> Array:
+def in_shadow(light: Array, ground: NDArray[np.bool_]) -> Array:
     """How far each pixel's light (N, 3) may be the ground's, dimmed, from 0 to 1."""
     if ground.sum() < 30:
         return np.zeros(len(light))
     usual = np.median(light[ground], axis=0)
     along = usual / np.linalg.norm(usual)
     reach = light @ along
-    off = np.linalg.norm(light - reach[:, None] * along, axis=1) / np.maximum(reach, 1e-4)
+    off = np.sqrt(np.maximum(np.einsum("ij,ij->i", light, light) - reach**2, 0.0))
+    off /= np.maximum(reach, 1e-4)
     spread = float(np.median(off[ground]))
     part = reach / (usual @ along)
     # the darker, the less its colour can be told
@@ -100,7 +101,8 @@ def _shadow(light: Array, ground: NDArray[np.bool_]) -> Array:
     return shadow
 
 
-def _histogram(cells: NDArray[np.intp], weights: Array) -> Array:
+def histogram(cells: NDArray[np.intp], weights: Array) -> Array:
+    """How likely each cell is (BINS^3,) among pixels with cells and weights (N,), smoothed."""
     counts: Array = np.bincount(cells, weights, minlength=BINS**3).astype(float)
     counts = counts.reshape(BINS, BINS, BINS)
     for axis in range(3):

@@ -36,14 +36,14 @@ class EdgeMap:
     structure: Picture
     usual: float
 
-    def around(self, window: Window, free: Picture, blur: float) -> Array:
+    def around(self, window: Window, free: Picture, blur: float) -> Picture:
         """The part in a window at full resolution, widened: 1 on a straight edge's ridge.
 
         `free` (rows, columns) of the part is 0 where edges belong to something in front.
         """
         part = self.structure[window.y : window.bottom, window.x : window.right]
         spread = cv2.GaussianBlur(part * free[:, :, None], (0, 0), blur)
-        ridges: Array = np.minimum(spread * (blur * np.sqrt(2 * np.pi)), 1.0)
+        ridges: Picture = np.minimum(spread * (blur * np.sqrt(2 * np.pi)), 1.0)
         return ridges
 
 

@@ -34,10 +34,14 @@ POINTS, BESIDE, LOUDEST = 96, (2.0, 4.0), 2.5
 
 @dataclass(frozen=True, eq=False)
 class Tried:
-    """The best fit of an object and its verdict; `fit` is None where no search came to one."""
+    """The best fit of an object and its verdict; `fit` is None where no search came to one.
+
+    `texture` is as of `texture_of`.
+    """
 
     fit: EdgeFit | None
     verdict: Verdict
+    texture: float = 0.0
 
 
 def align_one(
@@ -82,12 +86,12 @@ def _best(
     ]
     fit, _, look = ends[int(np.argmax(scores))]
     hull = hull_of(fit.solid, camera)
-    texture = 0.0 if hull is None else texture_of(hull, sight.edges)
+    texture = 0.0 if hull is None else texture_of(hull, fit, sight.edges)
     others = [other for other, _, _ in ends if other is not fit]
     judged = verdict(fit, others, rivalry(fit, camera, look), texture)
     if len(ends) < len(SEARCHES):
         judged = Verdict(False, (*judged.reasons, "only one of two searches came to an end"))
-    return Tried(fit, judged)
+    return Tried(fit, judged, texture)
 
 
 def _nothing(reason: str) -> Tried:

@@ -18,6 +18,7 @@ class AlignedObject:
     - `before_pixels`: how far its visible edges were from those of the picture, rms
     - `rms_pixels`, `median_pixels`: how far they are now, where there is an edge
     - `supported`: the share of its visible outline that lies on edges
+    - `texture`: edges inside the outline that are not the object's own, per pixel
     - `reasons`: why it is not believed; `warnings`: what else is doubtful
     """
 
@@ -30,6 +31,7 @@ class AlignedObject:
     rms_pixels: float = 0.0
     median_pixels: float = 0.0
     supported: float = 0.0
+    texture: float = 0.0
     warnings: tuple[str, ...] = ()
 
 

@@ -33,10 +33,10 @@ from .hypotheses import (
 from .sight import PictureSight
 from .window import Window, looked_up
 
-DRAWN, ELITE, ROUNDS = 96, 14, 16
+DRAWN, ELITE, ROUNDS = 96, 14, 14
 POINTS = 56
 # rounds before which colours are learnt again
-LEARNT = (0, 2, 4, 6, 8, 10)
+LEARNT = (0, 2, 4, 7, 10)
 # blurs of the edges in pixels, from the first to the last time that colours are learnt
 BLURS = (5.0, 1.2)
 # how far beside an outline the colours of its two sides are looked at, pixels
@@ -72,7 +72,7 @@ class Worth:
 class Surroundings:
     """What stands about: `in_front` (H, W) is 1 where others are in front.
 
-    `others` (H, W) each are the probabilities of what else is known to stand where.
+    `others` (H, W) each are the probabilities of what else is known to stand where, 255 for one.
     """
 
     in_front: Picture
@@ -85,7 +85,7 @@ class Found:
 
     solid: Solid
     window: Window
-    region: Array
+    region: Picture
 
 
 def search(
@@ -133,8 +133,8 @@ class _Maps:
 
     window: Window
     fine: Window
-    region: Array
-    edges: Array
+    region: Picture
+    edges: Picture
 
     def scores(self, hulls: Array, creases: Array, worth: Worth) -> Array:
         """What states are worth, (H,)."""
@@ -213,18 +213,20 @@ class _Place:
         sums = np.cumsum(region, axis=1) - 0.5 * region
         bare = 1.0 - cv2.dilate(self.fine.cut(self.around.in_front), RIM).astype(np.float32)
         edges = self.sight.edges.around(self.fine, bare, blur)
-        return _Maps(self.window, self.fine, np.stack([sums, region], axis=2), edges)
+        maps = np.stack([sums, region], axis=2).astype(np.float32)
+        return _Maps(self.window, self.fine, maps, edges)
 
-    def fine_evidence(self, hulls: Array) -> Array:
+    def fine_evidence(self, hulls: Array) -> Picture:
         """The same at full resolution, for the states at the end."""
         colors = Colors.of(self.fine.cut(self.sight.encoded), self.fine.cut(self.sight.light))
         inside = cv2.blur(np.mean([self.fine.mask(hull) for hull in hulls], axis=0), (5, 5))
-        return self._evidence(self.fine, colors, inside)
+        return self._evidence(self.fine, colors, inside).astype(np.float32)
 
     def _evidence(self, window: Window, colors: Colors, inside: Picture) -> Array:
         free = 1.0 - np.minimum(window.cut(self.around.in_front).astype(np.float32), 1.0)
-        beside: list[Picture] = [window.cut(other) for other in self.around.others]
-        return evidence(colors, inside, [part for part in beside if part.any()], free)
+        cuts = [window.cut(other) for other in self.around.others]
+        beside = [part.astype(np.float32) / 255 for part in cuts if part.any()]
+        return evidence(colors, inside, beside, free)
 
 
 def _across(structure: Array, normals: Array) -> Array:

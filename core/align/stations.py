@@ -114,7 +114,7 @@ class Look:
     noise: float
     hidden: Picture
     window: Window
-    region: Array
+    region: Picture
     stands: bool
 
     def lost_evidence(self, samples: CurveSamples, shares: Array, search: float) -> Array:

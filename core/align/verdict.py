@@ -29,6 +29,7 @@ RIVAL_SHARE, TEXTURE = 1.0, 0.15
 FOOT_PIXELS = 12.0
 # of the visible outline so much has an edge
 SUPPORTED_SHARE = 0.7
+CREASE_MARGIN = 9
 TEXTURE_MARGIN = np.ones((9, 9), dtype=np.uint8)
 
 
@@ -76,8 +77,8 @@ def moved_pixels(fit: EdgeFit, tangent: Array) -> float:
     return float(np.sqrt(np.mean((fit.stations.by_object @ tangent) ** 2)))
 
 
-def texture_of(hull: Array, edges: EdgeMap) -> float:
-    """Edges per pixel inside an outline (M, 2), away from it."""
+def texture_of(hull: Array, fit: EdgeFit, edges: EdgeMap) -> float:
+    """Edges per pixel inside an outline (M, 2), away from it and from the solid's own edges."""
     x, y, width, height = cv2.boundingRect(np.round(hull).astype(np.int32))
     x, y = max(x, 0), max(y, 0)
     part = edges.structure[y : y + height, x : x + width]
@@ -85,6 +86,8 @@ def texture_of(hull: Array, edges: EdgeMap) -> float:
         return 0.0
     mask = np.zeros(part.shape[:2], dtype=np.uint8)
     cv2.fillConvexPoly(mask, np.round(hull - [x, y]).astype(np.int32), (1,))
+    for own in fit.stations.pixels[~fit.stations.outline] - [x, y]:
+        cv2.circle(mask, (round(own[0]), round(own[1])), CREASE_MARGIN, (0,), -1)
     inside = cv2.erode(mask, TEXTURE_MARGIN) > 0
     weight = part[..., 0] + part[..., 2]
     return float(weight[inside].sum() / max(int(inside.sum()), 1))

@@ -13,6 +13,7 @@ from ..picture.pictures import Picture
 
 # sides are shrunk by whole numbers until the window's area has at most so many pixels
 MOST_PIXELS = 14000
+MOST_ROWS = 30000
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,18 +75,20 @@ class Window:
         return filled
 
 
-def looked_up(maps: Array, places: Array) -> Array:
+def looked_up(maps: Picture, places: Array) -> Array:
     """Maps (rows, columns, C) at places (..., 2), between pixels bilinearly, (..., C).
 
-    Beyond the rim the nearest pixel counts.
+    Beyond the rim the nearest pixel counts. C is four at most.
     """
-    rows, columns = maps.shape[:2]
-    x = np.clip(places[..., 0], 0, columns - 1.001)
-    y = np.clip(places[..., 1], 0, rows - 1.001)
-    i, j = x.astype(np.intp), y.astype(np.intp)
-    flat = maps.reshape(rows * columns, -1)
-    at, p, q = j * columns + i, (x - i)[..., None], (y - j)[..., None]
-    upper = flat[at] * (1 - p) + flat[at + 1] * p
-    lower = flat[at + columns] * (1 - p) + flat[at + columns + 1] * p
-    mixed: Array = upper * (1 - q) + lower * q
-    return mixed
+    flat = places.reshape(-1, places.shape[-2], 2).astype(np.float32)
+    if not flat.size:
+        return np.zeros((*places.shape[:-1], maps.shape[2]))
+    found = np.empty((*flat.shape[:2], maps.shape[2]), dtype=np.float32)
+    source = np.ascontiguousarray(maps, dtype=np.float32)
+    # remap takes less than 32768 rows at once
+    for start in range(0, len(flat), MOST_ROWS):
+        part = slice(start, start + MOST_ROWS)
+        u, v = flat[part, :, 0], flat[part, :, 1]
+        mixed = cv2.remap(source, u, v, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+        found[part] = np.asarray(mixed).reshape(found[part].shape)
+    return found.astype(float).reshape(*places.shape[:-1], maps.shape[2])
