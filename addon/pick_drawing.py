@@ -29,6 +29,11 @@ def draw_session(
     draw_lines([pixels for pixels, visible in lines if visible], SKY, 1.8, scale)
     draw_crosses(frame.region_points(session.view_pixels()), YELLOW, scale)
     draw_crosses(np.array([cursor]), WHITE, scale)
-    rows = [(session.prompt, WHITE), (preview.words, YELLOW), (preview.complaint, ORANGE)]
+    rows = [
+        (session.prompt, WHITE),
+        (preview.words, YELLOW),
+        (session.typed_words, SKY),
+        (preview.complaint, ORANGE),
+    ]
     size = (context.region.width, context.region.height)
     draw_words(rows, *cursor, size, scale)
