@@ -8,6 +8,7 @@ the objects are Blender's objects. Each thing is written in one place, so they c
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -18,8 +19,10 @@ import bpy
 from ..core.cell import Cell
 from ..core.document.cell_file import cell_from_document, document_from_cell
 from ..core.document.json_text import dumped
+from ..core.errors import PictureError
 from ..core.reference import PendingReference, ReferencePlane, kind_of
 from ..core.sighting import SphereSighting
+from .renaming import renamed_composite, renamed_reference, renamed_thing, standing_alone
 from .report import Report, dump_report, parse_report
 
 FLOOR = ReferencePlane("floor", [0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
@@ -33,12 +36,32 @@ def has_cell(scene: Any) -> bool:
 def read_scene(scene: Any) -> Cell:
     """The whole cell: the scene's document with the objects as they stand in Blender now.
 
-    Raises InvalidValue when an object was edited out of its kind, or two share a name.
+    What names an object that was renamed follows it; what names one that was deleted stays where
+    it is without it. Raises InvalidValue when an object was edited out of its kind, or two share a
+    name.
     """
-    from ..scene.objects import is_modelled, read_object
+    from ..core.orphans import without_lost_joints, without_lost_relations
+    from ..scene.objects import is_modelled, name_when_built, read_object
 
-    objects = tuple(read_object(ob) for ob in scene.objects if is_modelled(ob))
-    return replace(bare_cell(scene), objects=objects)
+    built = [ob for ob in scene.objects if is_modelled(ob)]
+    objects = [read_object(ob) for ob in built]
+    there = {thing.name for thing in objects}
+    names = {
+        old: thing.name
+        for old, thing in zip(map(name_when_built, built), objects, strict=True)
+        if old not in there
+    }
+    bare = bare_cell(scene)
+    references = tuple(renamed_reference(reference, names) for reference in bare.references)
+    everything = {*there, *(sketch.name for sketch in bare.sketches)}
+    references = standing_alone(references, everything)
+    objects, composites, _ = without_lost_joints(
+        [renamed_thing(thing, names) for thing in objects],
+        [renamed_composite(composite, names) for composite in bare.composites],
+    )
+    named = [reference.name for reference in references]
+    objects, _ = without_lost_relations(objects, named, bare.sketches)
+    return replace(bare, references=references, objects=objects, composites=composites)
 
 
 def bare_cell(scene: Any) -> Cell:
@@ -69,13 +92,27 @@ def write_scene(scene: Any, cell: Cell, report: Report | None = None) -> None:
     _fill_references(stored, cell)
 
 
-def show_objects(scene: Any, cell: Cell) -> None:
-    """Build every object of `cell`, in place where it is there already."""
-    from ..scene.objects import build_object
+def show_objects(
+    scene: Any, cell: Cell, names: Collection[str] | None = None
+) -> tuple[str, ...]:
+    """Build the objects of `cell`, or those of `names`, in place where they are there already.
 
-    collection = objects_collection(scene)
+    Returns a word on every object whose texture is missing: it has its colour alone.
+    """
+    from ..scene.objects import build_object
+    from ..scene.textures import is_textured, paint
+
+    collection, told = objects_collection(scene), []
     for thing in cell.objects:
-        build_object(thing, collection)
+        if names is not None and thing.name not in names:
+            continue
+        ob = build_object(thing, collection)
+        if is_textured(thing):
+            try:
+                paint(ob.data, thing, cell.folder)
+            except PictureError as error:
+                told.append(f"{thing.name}: {error}")
+    return tuple(told)
 
 
 def objects_collection(scene: Any) -> Any:
@@ -102,6 +139,7 @@ def _fill_sightings(stored: Any, cell: Cell, report: Report | None) -> None:
 
 
 def _fill_references(stored: Any, cell: Cell) -> None:
+    fresh = not len(stored.references)
     stored.references.clear()
     for reference in cell.references:
         row = stored.references.add()
@@ -113,8 +151,8 @@ def _fill_references(stored: Any, cell: Cell) -> None:
         plane = isinstance(reference, ReferencePlane)
         way = reference.normal if plane else reference.direction
         row.place = _where(reference.point) + (" ⟂ " if plane else " ∥ ") + _where(way)
-    planes = [i for i, r in enumerate(cell.references) if isinstance(r, ReferencePlane)]
-    if stored.reference_index not in planes:
+    if fresh or stored.reference_index >= len(cell.references):
+        planes = [i for i, r in enumerate(cell.references) if isinstance(r, ReferencePlane)]
         stored.reference_index = planes[0]
 
 

@@ -111,6 +111,11 @@ def read_object(ob: Any) -> Primitive:
     return replace(shape, world_from_object=Pose(pose.rotation, centre))
 
 
+def name_when_built(ob: Any) -> str:
+    """The name in the document that a modelled object was last built by."""
+    return str(ob[ENTRY]["name"])
+
+
 def _name(ob: Any) -> str:
     return ob[ENTRY]["name"] if ob.name == ob.get(BLENDER_NAME) else ob.name
 
