@@ -6,21 +6,23 @@ def register():
     """Put all of it in place. OpenCV and the graphics module wait until they are needed."""
     import bpy
 
-    from . import menus, overlay, properties
+    from . import keymap, menus, overlay, properties
 
     properties.register()
     for cls in _classes():
         bpy.utils.register_class(cls)
     menus.register()
     overlay.register()
+    keymap.register()
 
 
 def unregister():
     """Take it away, in reverse."""
     import bpy
 
-    from . import menus, overlay, properties
+    from . import keymap, menus, overlay, properties
 
+    keymap.unregister()
     overlay.unregister()
     menus.unregister()
     for cls in reversed(_classes()):
@@ -30,8 +32,10 @@ def unregister():
 
 def _classes():
     from . import drops, lists, operators, panel_camera, panel_model, panel_picture, panel_use
+    from .preferences import Preferences
 
     return (
+        Preferences,
         *operators.classes(),
         *drops.CLASSES,
         *lists.CLASSES,

@@ -10,10 +10,17 @@ from .polls import NeedsPose
 from .refusals import refuses
 
 
-def way_property(kind):
-    """The choice of how a kind is picked and held."""
+def way_property(kind, usual=None):
+    """The choice of how a kind is picked and held, the first way or the `usual` one offered."""
     ways = [(name, label, meaning) for name, label, meaning, _ in WAYS[kind]]
-    return EnumProperty(name="Way", description="How it is picked and held", items=ways)
+    default = usual or ways[0][0]
+    return EnumProperty(
+        name="Way",
+        description="How it is picked and held",
+        items=ways,
+        default=default,
+        options={"SKIP_SAVE"},
+    )
 
 
 class AddsPicked(PicksOnPicture, NeedsPose):

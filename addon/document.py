@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene is the document: a Cell out of a scene, and a Cell or a calibration into it.
 
-The scene's text holds camera, picture, sightings, references and what is picked but not solved;
-the objects are Blender's objects. Each thing is written in one place, so they can't disagree.
+The scene's text holds camera, picture, sightings, references, composites and what is picked but not
+solved. The objects are Blender's objects: those in the text only keep it a whole document, since
+others in it call them by name.
 """
 
 from __future__ import annotations
@@ -22,7 +23,6 @@ from ..core.document.json_text import dumped
 from ..core.errors import PictureError
 from ..core.reference import PendingReference, ReferencePlane, kind_of
 from ..core.sighting import SphereSighting
-from .renaming import renamed_composite, renamed_reference, renamed_thing, standing_alone
 from .report import Report, dump_report, parse_report
 
 FLOOR = ReferencePlane("floor", [0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
@@ -36,38 +36,54 @@ def has_cell(scene: Any) -> bool:
 def read_scene(scene: Any) -> Cell:
     """The whole cell: the scene's document with the objects as they stand in Blender now.
 
-    What names an object that was renamed follows it; what names one that was deleted stays where
-    it is without it. Raises InvalidValue when an object was edited out of its kind, or two share a
-    name.
-    """
-    from ..core.orphans import without_lost_joints, without_lost_relations
-    from ..scene.objects import is_modelled, name_when_built, read_object
+    What named an object that was renamed there names it by its new name; what named one that was
+    deleted lets go of it.
 
-    built = [ob for ob in scene.objects if is_modelled(ob)]
-    objects = [read_object(ob) for ob in built]
-    there = {thing.name for thing in objects}
-    names = {
-        old: thing.name
-        for old, thing in zip(map(name_when_built, built), objects, strict=True)
-        if old not in there
-    }
-    bare = bare_cell(scene)
-    references = tuple(renamed_reference(reference, names) for reference in bare.references)
-    everything = {*there, *(sketch.name for sketch in bare.sketches)}
-    references = standing_alone(references, everything)
-    objects, composites, _ = without_lost_joints(
-        [renamed_thing(thing, names) for thing in objects],
-        [renamed_composite(composite, names) for composite in bare.composites],
+    Raises InvalidValue when an object was edited out of its kind, or two share a name.
+    """
+    from ..core.links import (
+        references_kept,
+        with_new_names,
+        without_lost_joints,
+        without_lost_relations,
     )
-    named = [reference.name for reference in references]
-    objects, _ = without_lost_relations(objects, named, bare.sketches)
-    return replace(bare, references=references, objects=objects, composites=composites)
+    from ..scene.objects import built_name, is_modelled, read_object
+
+    cell = bare_cell(scene)
+    modelled = [ob for ob in scene.objects if is_modelled(ob)]
+    objects = [read_object(ob) for ob in modelled]
+    there = {thing.name for thing in objects}
+    # a copy names its original's neighbours; only what is gone by its old name was renamed
+    renamed = {
+        built_name(ob): thing.name
+        for ob, thing in zip(modelled, objects, strict=True)
+        if built_name(ob) not in there
+    }
+    things, composites = with_new_names([*objects, *cell.sketches], cell.composites, renamed)
+    things, composites, _ = without_lost_joints(things, composites)
+    things, _ = without_lost_relations(things, {r.name for r in cell.references})
+    names = {thing.name for thing in things}
+    return replace(
+        cell,
+        references=references_kept(cell.references, renamed, names),
+        objects=things[: len(objects)],
+        sketches=things[len(objects) :],
+        composites=composites,
+    )
 
 
 def bare_cell(scene: Any) -> Cell:
-    """The cell without its objects; cheap enough for panels, which draw often."""
+    """The cell with its objects as they were last written; cheap enough for panels."""
     stored = scene.monocell_cell
     return _parsed(stored.text, stored.folder)
+
+
+def active_plane(scene: Any) -> ReferencePlane | None:
+    """The list's active reference, None where it is a line or has no place yet."""
+    references = bare_cell(scene).references
+    index = scene.monocell_cell.reference_index
+    active = references[index] if 0 <= index < len(references) else None
+    return active if isinstance(active, ReferencePlane) else None
 
 
 def stored_report(scene: Any) -> Report | None:
@@ -86,15 +102,13 @@ def write_scene(scene: Any, cell: Cell, report: Report | None = None) -> None:
     folder = cell.folder.resolve()
     stored = scene.monocell_cell
     stored.folder = str(folder)
-    stored.text = dumped(document_from_cell(replace(cell, objects=()), folder))
+    stored.text = dumped(document_from_cell(cell, folder))
     stored.report = "" if report is None else dump_report(report)
     _fill_sightings(stored, cell, report)
     _fill_references(stored, cell)
 
 
-def show_objects(
-    scene: Any, cell: Cell, names: Collection[str] | None = None
-) -> tuple[str, ...]:
+def show_objects(scene: Any, cell: Cell, names: Collection[str] | None = None) -> tuple[str, ...]:
     """Build the objects of `cell`, or those of `names`, in place where they are there already.
 
     Returns a word on every object whose texture is missing: it has its colour alone.

@@ -63,12 +63,21 @@ def draw_lines(lines: Sequence[Array], color: Color, width: float, scale: float)
     LineBatch(lines, color, width).draw(scale)
 
 
-def draw_crosses(points: Array, color: Color, scale: float) -> None:
+def draw_crosses(points: Iterable[Array], color: Color, scale: float) -> None:
     """Draw a small upright cross at each of the points (N, 2), its middle left open."""
     inner, outer = 2.5 * scale, 8.0 * scale
     arms = [np.array(way) for way in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))]
-    lines = [np.array([p + inner * arm, p + outer * arm]) for p in points for arm in arms]
+    lines = [
+        np.array([p + inner * arm, p + outer * arm]) for p in map(np.array, points) for arm in arms
+    ]
     draw_lines(lines, color, 1.5, scale)
+
+
+def draw_ring(point: Array, color: Color, scale: float) -> None:
+    """Draw a small circle round a region point (2,): something was found there."""
+    angles = np.linspace(0, 2 * np.pi, 33)
+    ring = point + 11.0 * scale * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    draw_lines([ring], color, 1.5, scale)
 
 
 def draw_words(

@@ -71,9 +71,7 @@ def with_pick(
     return solved(_with(cell, thing), [name], sigma)
 
 
-def with_moved_pick(
-    thing: Primitive, role: str, index: int, pixel: Iterable[float]
-) -> Primitive:
+def with_moved_pick(thing: Primitive, role: str, index: int, pixel: Iterable[float]) -> Primitive:
     """The object, not solved again yet, with a pick elsewhere.
 
     Raises InvalidValue for a pick that it has not.

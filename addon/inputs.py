@@ -100,6 +100,11 @@ class SceneInputs(bpy.types.PropertyGroup):
         max=50.0,
         precision=2,
     )
+    show_grid: BoolProperty(
+        name="Grid",
+        description="Draw the active reference as a grid on the picture",
+        default=True,
+    )
     ball_radius: FloatProperty(
         name="Ball radius",
         description="Radius of the ball of new sightings, metres",

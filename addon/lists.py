@@ -12,6 +12,24 @@ STATUS_ICONS = {
     "doubtful": "QUESTION",
     "rejected": "CANCEL",
 }
+KIND_ICONS = {
+    "box": "MESH_CUBE",
+    "cylinder": "MESH_CYLINDER",
+    "sphere": "MESH_UVSPHERE",
+    "cone": "MESH_CONE",
+    "tube": "MESH_TORUS",
+    "prism": "MESH_DATA",
+}
+
+
+KIND_ICONS = {
+    "box": "MESH_CUBE",
+    "cylinder": "MESH_CYLINDER",
+    "sphere": "MESH_UVSPHERE",
+    "cone": "MESH_CONE",
+    "tube": "MESH_TORUS",
+    "prism": "MESH_ICOSPHERE",
+}
 
 
 class SightingList(bpy.types.UIList):
@@ -52,8 +70,7 @@ class ObjectList(bpy.types.UIList):
         """One row."""
         entry = item.get("monocell")
         kind = entry["kind"] if entry else ""
-        icons = {"box": "MESH_CUBE", "cylinder": "MESH_CYLINDER"}
-        layout.prop(item, "name", text="", emboss=False, icon=icons.get(kind, "ERROR"))
+        layout.prop(item, "name", text="", emboss=False, icon=KIND_ICONS.get(kind, "ERROR"))
 
 
 CLASSES = (SightingList, ReferenceList, ObjectList)

@@ -76,4 +76,3 @@ def redraw(context: Any) -> None:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
-

@@ -96,3 +96,14 @@ def _parsed(text: str, kind: str, what: str) -> Any:
     if not isinstance(parsed, dict):
         raise PickError(f"{what}: expected a JSON object, got {text:.40}")
     return parsed
+
+
+def parsed_pixels(text: str) -> Any:
+    """Pixels [[u, v], ...] from JSON. Raises PickError for anything else."""
+    try:
+        pixels = json.loads(text or "[]")
+    except json.JSONDecodeError as error:
+        raise PickError(f"picks: not JSON ({error.msg}); click in the picture") from None
+    if not isinstance(pixels, list) or not all(isinstance(p, list) and len(p) == 2 for p in pixels):
+        raise PickError(f"picks: expected a list of pixels [u, v], got {text:.40}")
+    return pixels

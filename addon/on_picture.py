@@ -6,6 +6,7 @@ import bpy
 from .cell_scene import looks_through
 from .document import bare_cell
 from .picture_frame import free_part, picture_frame
+from .preferences import settings
 
 # what moves the view goes to Blender, so that zoom and pan work as ever
 VIEW_EVENTS = frozenset(
@@ -47,9 +48,15 @@ class OnPicture:
         if space is None or space.type != "VIEW_3D" or not looks_through(scene, space):
             self.report({"ERROR"}, "Look through the cell's camera first: picks are made there")
             return {"CANCELLED"}
+        from .aiming import Aiming
+        from .loupe import shown_pixels
+
+        self.settings = settings(context)
         self._area = context.area.as_pointer()
         self._intrinsics = bare_cell(scene).camera.intrinsics
-        self.cursor = None
+        self._aiming, self._aimed = Aiming.of(scene), None
+        self._shown_pixels = shown_pixels(scene) if self.settings.loupe else None
+        self.cursor, self._turned = None, False
         self._follow(context.area, event)
         self._handle = bpy.types.SpaceView3D.draw_handler_add(
             self._draw, (context,), "WINDOW", "POST_PIXEL"
@@ -65,6 +72,7 @@ class OnPicture:
         if area is None or (event.type in CANCEL_EVENTS and event.value == "PRESS"):
             self.end(context)
             return {"CANCELLED"}
+        self._turned = event.ctrl
         if event.type == "MOUSEMOVE":
             self._follow(area, event)
         if event.type == "MIDDLEMOUSE" and not (event.shift or event.ctrl or event.alt):
@@ -112,9 +120,51 @@ class OnPicture:
             return None
         return frame.picture_pixel(x, y) if frame.contains(x, y) else None
 
+    def aim(self, context, area):
+        """What a click here would mean, an `Aim`; None beside the picture. Ctrl turns snapping."""
+        from .aiming import Aim
+
+        pixel = self.pixel(context, area)
+        if pixel is None:
+            return None
+        if self.settings.snap == self._turned:
+            return Aim(pixel, "")
+        frame = self.frame(context, area)
+        scale = context.preferences.system.ui_scale
+        screen_pixel = self._intrinsics.width / (frame.right - frame.left)
+        radius = self.settings.snap_radius * scale * screen_pixel
+        key = (*pixel, radius)
+        # Blender redraws more often than the mouse moves
+        if self._aimed is None or self._aimed[0] != key:
+            self._aimed = key, self._aiming.aimed(pixel, radius)
+        return self._aimed[1]
+
+    def paint_aim(self, context, frame, lines=()):
+        """The cursor where a click would go, what it snaps to, and the loupe. Returns the words."""
+        from .drawing import WHITE, draw_crosses, draw_ring
+
+        scale = context.preferences.system.ui_scale
+        aim = self.aim(context, context.area)
+        if aim is None:
+            draw_crosses([self.cursor], WHITE, scale)
+            return ""
+        centre = frame.view_pixels([aim.pixel])
+        at = frame.region_points(centre)
+        draw_crosses(at, WHITE, scale)
+        if aim.told:
+            draw_ring(at[0], self.settings.active_color, scale)
+        if self._shown_pixels is not None:
+            from .loupe import Loupe
+
+            size = (context.region.width, context.region.height)
+            loupe = Loupe(self.cursor, size, self.settings.loupe_zoom, scale)
+            loupe.draw(self._shown_pixels, centre[0], lines, scale)
+        return f"snapped to {aim.told}" if aim.told else ""
+
     def tell(self, context):
         """Name the keys in the status bar."""
-        keys = (*self.keys(), *PAN_KEYS)
+        snapping = "Do not snap" if self.settings.snap else "Snap"
+        keys = (*self.keys(), ("EVENT_CTRL", f"   {snapping}"), *PAN_KEYS)
 
         def draw(header, context):
             row = header.layout.row(align=True)

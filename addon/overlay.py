@@ -7,7 +7,9 @@ from typing import Any
 
 import bpy
 
-from .document import bare_cell, has_cell, stored_report
+from .document import active_plane, bare_cell, has_cell, stored_report
+from .preferences import settings
+from .settings import Settings
 
 
 class Overlay:
@@ -19,7 +21,9 @@ class Overlay:
 
     def __init__(self) -> None:
         self._balls: tuple[Any, list[Any], list[Any]] = ((), [], [])
-        self._objects: dict[str, tuple[Any, list[Any]]] = {}
+        self._grid: tuple[Any, list[Any]] = ((), [])
+        self._strokes: dict[str, tuple[Any, list[Any]]] = {}
+        self._objects: tuple[Any, list[Any]] = ((), [])
 
     def draw(self) -> None:
         """Blender's call, once a redraw of any 3D viewport."""
@@ -40,7 +44,14 @@ class Overlay:
         intrinsics = bare_cell(scene).camera.intrinsics
         frame = picture_frame(scene, context.region, space, intrinsics)
         (x, y), (right, below) = frame.region_points([[0.0, 0.0], [1.0, 1.0]])
-        batches = [*self._object_batches(context, scene), *self._ball_batches(scene)]
+        look = settings(context)
+        batches = [
+            *self._grid_batches(scene, look),
+            *self._object_batches(context, scene, look),
+        ]
+        # sightings would lie over what is picked
+        picking = context.window_manager.monocell_work.picking
+        batches += [] if picking else self._ball_batches(scene, look)
         scale = context.preferences.system.ui_scale
         with gpu.matrix.push_pop():
             gpu.matrix.translate((x, y))
@@ -49,38 +60,62 @@ class Overlay:
                 batch.draw(scale)
         from .drawing import draw_labels
 
-        _, _, labels = self._balls
+        labels = [] if picking else self._balls[2]
         points = frame.region_points([label.pixel for label in labels]) if labels else ()
         draw_labels(
             [(at, one.text, one.color) for at, one in zip(points, labels, strict=True)], scale
         )
 
-    def _ball_batches(self, scene: Any) -> list[Any]:
+    def _grid_batches(self, scene: Any, look: Settings) -> list[Any]:
         stored = scene.monocell_cell
-        key = (stored.text, stored.report, stored.sighting_index)
+        camera = bare_cell(scene).camera
+        if not scene.monocell_inputs.show_grid or camera.camera_from_world is None:
+            return []
+        key = (stored.text, stored.reference_index, look)
+        if self._grid[0] != key:
+            from .overlay_lines import grid_strokes
+            from .plane_grid import plane_grid
+
+            plane = active_plane(scene)
+            grid = None if plane is None else plane_grid(camera, plane)
+            self._grid = key, [] if grid is None else _batches(grid_strokes(grid, look))
+        return self._grid[1]
+
+    def _ball_batches(self, scene: Any, look: Settings) -> list[Any]:
+        stored = scene.monocell_cell
+        shown = stored.shown_picture
+        key = (stored.text, stored.report, stored.sighting_index, look, shown)
         if self._balls[0] != key:
             from .overlay_lines import sighting_labels, sighting_strokes
 
             cell, report = bare_cell(scene), stored_report(scene)
-            strokes = sighting_strokes(cell, report, stored.sighting_index)
-            self._balls = key, _batches(strokes), list(sighting_labels(cell, report))
+            strokes = sighting_strokes(cell, report, stored.sighting_index, look, shown)
+            self._balls = key, _batches(strokes), list(sighting_labels(cell, report, look))
         return self._balls[1]
 
-    def _object_batches(self, context: Any, scene: Any) -> list[Any]:
+    def _object_batches(self, context: Any, scene: Any, look: Settings) -> list[Any]:
         from ..scene.objects import is_modelled
 
         if bare_cell(scene).camera.camera_from_world is None:
             return []
-        active = context.view_layer.objects.active
-        shown = [ob for ob in scene.objects if is_modelled(ob) and ob.visible_get()]
-        before, self._objects = self._objects, {}
-        for ob in shown:
-            key = _object_key(scene, ob, ob == active and ob.select_get())
+        active, text = context.view_layer.objects.active, scene.monocell_cell.text
+        before, self._strokes = self._strokes, {}
+        for ob in scene.objects:
+            if not is_modelled(ob) or not ob.visible_get():
+                continue
+            key = _object_key(ob, ob == active and ob.select_get(), text, look)
             held = before.get(ob.name)
             if held is None or held[0] != key:
-                held = key, _batches(_strokes_of(scene, ob, key[0]))
-            self._objects[ob.name] = held
-        return [batch for _, batches in self._objects.values() for batch in batches]
+                held = key, list(_strokes_of(scene, ob, key[0], look))
+            self._strokes[ob.name] = held
+        keys = tuple((name, key) for name, (key, _) in self._strokes.items())
+        if self._objects[0] != keys:
+            from .overlay_lines import merged
+
+            # of a hundred objects one was moved: their lines are kept, and sent as one
+            strokes = [stroke for _, held in self._strokes.values() for stroke in held]
+            self._objects = keys, _batches(merged(strokes))
+        return self._objects[1]
 
 
 def register() -> None:
@@ -96,13 +131,13 @@ def unregister() -> None:
     del bpy.types.SpaceView3D.monocell_overlay
 
 
-def _object_key(scene: Any, ob: Any, active: bool) -> tuple[Any, ...]:
+def _object_key(ob: Any, active: bool, text: str, look: Settings) -> tuple[Any, ...]:
     """What an object's lines depend on; in edit mode its dimensions follow the edit."""
     place = tuple(tuple(row) for row in ob.matrix_world)
-    return (active, scene.monocell_cell.text, place, tuple(ob.dimensions))
+    return (active, text, look, place, tuple(ob.dimensions))
 
 
-def _strokes_of(scene: Any, ob: Any, active: bool) -> Any:
+def _strokes_of(scene: Any, ob: Any, active: bool, look: Settings) -> Any:
     from ..core.errors import MonocellError
     from ..scene.objects import read_object
     from .overlay_lines import object_strokes
@@ -112,7 +147,7 @@ def _strokes_of(scene: Any, ob: Any, active: bool) -> Any:
     except MonocellError:
         # an object edited out of its kind has no wire-frame; the panel says so
         return ()
-    return object_strokes(thing, bare_cell(scene).camera, active)
+    return object_strokes(thing, bare_cell(scene).camera, active, look)
 
 
 def _batches(strokes: Any) -> list[Any]:

@@ -7,7 +7,7 @@ All in pixels of the undistorted view, which changes neither with zoom nor with 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -21,10 +21,11 @@ from ..core.cell import Cell
 from ..core.picture.wireframe import finite_parts, wireframe
 from ..core.primitives import Primitive
 from ..core.sighting import PointSighting, SphereSighting
-from .drawing import GREEN, GREY, HALO, ORANGE, RED, SKY, VIOLET, WHITE, YELLOW, Color
+from .drawing import GREY, HALO, WHITE, YELLOW, Color
+from .plane_grid import PlaneGrid
 from .report import Report
+from .settings import DEFAULTS, Settings
 
-STATUS_COLORS = {"found": SKY, "used": GREEN, "doubtful": ORANGE, "rejected": RED}
 # what an outline is left with after the fit, in pixels: as good as pictures allow, and no longer so
 FINE_PIXELS, POOR_PIXELS = 0.1, 0.6
 # orange at least
@@ -32,6 +33,7 @@ DOUBTFUL_SHARE = 2 / 3
 OUTLINE_POINTS = 120
 LONGEST_REASON = 40
 CROSS_PIXELS = 7.0
+ELSEWHERE = 0.55
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,22 +54,39 @@ class Label:
     color: Color
 
 
-def sighting_strokes(cell: Cell, report: Report | None, active: int) -> Iterator[Stroke]:
-    """Outlines of the balls, crosses of the points, the active window and the advised places."""
+def sighting_strokes(
+    cell: Cell,
+    report: Report | None,
+    active: int,
+    settings: Settings = DEFAULTS,
+    shown: str | None = None,
+) -> Iterator[Stroke]:
+    """Outlines of the balls, crosses of the points, the active window and the advised places.
+
+    Those that belong to another picture than `shown` are fainter.
+    """
     for i, sighting in enumerate(cell.sightings):
-        width = 2.6 if i == active else 1.5
+        width = settings.line_width + (1.1 if i == active else 0.0)
         lines = _sighting_lines(cell, report, i)
-        if lines:
-            yield from haloed(lines, sighting_color(report, i, sighting.use), width)
+        color = sighting_color(report, i, sighting.use, settings)
+        if lines and shown in (None, sighting.picture):
+            yield from haloed(lines, color, width)
+        elif lines:
+            # of another picture than the one that is shown
+            yield Stroke(lines, (*color[:3], ELSEWHERE * color[3]), width)
         if i == active and isinstance(sighting, SphereSighting) and sighting.window is not None:
             yield from haloed((_rectangle(cell, sighting.window),), WHITE, 1.0)
     for place in report.advice if report is not None else ():
         x, y, z = cell.camera.pose.apply(np.array(place.place))
         radius = place.radius_pixels / cell.camera.intrinsics.fx * float(z)
-        yield Stroke(_outline(cell, (float(x), float(y), float(z), radius)), VIOLET, 1.5)
+        yield Stroke(
+            _outline(cell, (float(x), float(y), float(z), radius)), settings.advice_color, 1.5
+        )
 
 
-def sighting_labels(cell: Cell, report: Report | None) -> Iterator[Label]:
+def sighting_labels(
+    cell: Cell, report: Report | None, settings: Settings = DEFAULTS
+) -> Iterator[Label]:
     """The number of each sighting at its outline; the doubtful say why."""
     for i, sighting in enumerate(cell.sightings):
         lines = _sighting_lines(cell, report, i)
@@ -80,40 +99,62 @@ def sighting_labels(cell: Cell, report: Report | None) -> Iterator[Label]:
             told += "  " + textwrap.shorten(
                 report.sightings[i].reason, LONGEST_REASON, placeholder=" ..."
             )
-        yield Label(corner, told, sighting_color(report, i, sighting.use))
+        yield Label(corner, told, sighting_color(report, i, sighting.use, settings))
     for k, place in enumerate(report.advice if report is not None else ()):
         told = f"next {k + 1}: {place.sigma_millimetres:.2f} mm"
-        yield Label(_view_pixels(cell, [place.pixel])[0], told, VIOLET)
+        yield Label(_view_pixels(cell, [place.pixel])[0], told, settings.advice_color)
 
 
-def sighting_color(report: Report | None, i: int, use: bool) -> Color:
+def sighting_color(
+    report: Report | None, i: int, use: bool, settings: Settings = DEFAULTS
+) -> Color:
     """Green for an outline that the pose explains, over yellow to red as more of it is left."""
     if not use:
         return GREY
-    if report is None or not report.sightings[i].status:
+    seen = report.sightings[i] if report is not None else None
+    if seen is None or not seen.status:
         return WHITE
-    seen = report.sightings[i]
-    if seen.status == "rejected" or seen.rms_pixels is None:
-        return STATUS_COLORS[seen.status]
+    if seen.status == "rejected":
+        return settings.rejected_color
+    if seen.rms_pixels is None:
+        return settings.object_color
     share = (seen.rms_pixels - FINE_PIXELS) / (POOR_PIXELS - FINE_PIXELS)
     if seen.status == "doubtful":
         share = max(share, DOUBTFUL_SHARE)
-    stops = np.array([GREEN, YELLOW, ORANGE, RED])
-    r, g, b, a = (
-        float(np.interp(np.clip(share, 0, 1) * 3, range(4), stops[:, c])) for c in range(4)
+    stops = np.array(
+        [settings.good_color, YELLOW, settings.doubtful_color, settings.rejected_color]
     )
+    r, g, b, a = (float(np.interp(np.clip(share, 0, 1) * 3, range(4), c)) for c in stops.T)
     return (r, g, b, a)
 
 
-def object_strokes(thing: Primitive, camera: Camera, active: bool) -> Iterator[Stroke]:
+def grid_strokes(grid: PlaneGrid, settings: Settings = DEFAULTS) -> Iterator[Stroke]:
+    """The lines of the active reference, every fifth one stronger."""
+    r, g, b, a = settings.grid_color
+    yield Stroke(grid.fine, (r, g, b, a * 0.6), 1.0)
+    yield Stroke(grid.major, (r, g, b, min(2 * a, 1.0)), 1.0)
+
+
+def object_strokes(
+    thing: Primitive, camera: Camera, active: bool, settings: Settings = DEFAULTS
+) -> Iterator[Stroke]:
     """The wire-frame of an object, hidden edges faint."""
-    color = YELLOW if active else SKY
+    color = settings.active_color if active else settings.object_color
     pinhole = replace(camera, intrinsics=camera.intrinsics.undistorted())
     frame = wireframe(thing, pinhole)
     hidden = tuple(line.pixels for line in frame if not line.visible)
-    yield Stroke(hidden, (*color[:3], 0.5), 1.0)
+    yield Stroke(hidden, (*color[:3], 0.5 * color[3]), 1.0)
     seen = tuple(line.pixels for line in frame if line.visible)
-    yield from haloed(seen, color, 1.8)
+    yield from haloed(seen, color, settings.line_width + 0.2)
+
+
+def merged(strokes: Iterable[Stroke]) -> Iterator[Stroke]:
+    """The same lines in as few strokes as there are looks, halos first."""
+    looks: dict[tuple[Color, float], list[Array]] = {}
+    for stroke in strokes:
+        looks.setdefault((stroke.color, stroke.width), []).extend(stroke.lines)
+    for (color, width), lines in sorted(looks.items(), key=lambda look: look[0][0] != HALO):
+        yield Stroke(tuple(lines), color, width)
 
 
 def haloed(lines: tuple[Array, ...], color: Color, width: float) -> tuple[Stroke, Stroke]:

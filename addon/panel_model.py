@@ -6,10 +6,25 @@ import bpy
 from .document import bare_cell, has_cell
 from .lists import ObjectList, ReferenceList
 from .operators.add_box import AddBox
+from .operators.add_cone import AddCone
 from .operators.add_cylinder import AddCylinder
+from .operators.add_frustum import AddFrustum
+from .operators.add_prism import AddPrism
+from .operators.add_sphere import AddSphere
+from .operators.add_tube import AddTube
 from .operators.solve_again import SolveAgain
 from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
 from .steps import count_objects, model_step
+
+TOOLS = (
+    (AddBox, "Box", "MESH_CUBE"),
+    (AddCylinder, "Cylinder", "MESH_CYLINDER"),
+    (AddSphere, "Sphere", "MESH_UVSPHERE"),
+    (AddPrism, "Prism", "MESH_ICOSPHERE"),
+    (AddCone, "Cone", "MESH_CONE"),
+    (AddFrustum, "Frustum", "MESH_CONE"),
+    (AddTube, "Tube", "MESH_TORUS"),
+)
 
 
 class ModelPanel(CellPanel, bpy.types.Panel):
@@ -40,11 +55,13 @@ class ModelPanel(CellPanel, bpy.types.Panel):
             rows=1,
             maxrows=2,
         )
+        tools = layout.grid_flow(row_major=True, columns=3, even_columns=True, align=True)
+        tools.scale_y = 1.2
+        for tool, text, icon in TOOLS:
+            tools.operator(tool.bl_idname, text=text, icon=icon)
         row = layout.row(align=True)
-        row.scale_y = 1.3
-        row.operator(AddBox.bl_idname, icon="MESH_CUBE")
-        row.operator(AddCylinder.bl_idname, icon="MESH_CYLINDER")
-        layout.prop(scene.monocell_inputs, "pick_sigma_pixels", text="Pick noise (px)")
+        row.prop(scene.monocell_inputs, "pick_sigma_pixels", text="Pick noise (px)")
+        row.prop(scene.monocell_inputs, "show_grid", text="", icon="GRID")
         self._draw_objects(layout, context)
 
     def _draw_objects(self, layout, context):
@@ -83,7 +100,9 @@ def _rows(thing):
     sigmas, place = thing.size_sigma(), thing.position_sigma()
     for i, (name, size) in enumerate(zip(thing.size_names, thing.sizes, strict=True)):
         error = "" if sigmas is None or sigmas[i] == 0 else f" ± {1e3 * sigmas[i]:.1f}"
-        yield name.replace("size_", "Size ").capitalize(), f"{1e3 * size:.1f}{error} mm"
+        yield name.replace("_", " ").capitalize(), f"{1e3 * size:.1f}{error} mm"
+    if thing.kind == "prism":
+        yield "Corners", str(len(thing.polygon))
     yield "Centre", ", ".join(f"{1e3 * x:.1f}" for x in thing.world_from_object.translation) + " mm"
     if place is not None:
         yield "± 1 sigma", ", ".join(f"{1e3 * x:.1f}" for x in place) + " mm"

@@ -5,35 +5,83 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from .drawing import ORANGE, SKY, WHITE, YELLOW, LineBatch, draw_crosses, draw_lines, draw_words
+from .drawing import (
+    ORANGE,
+    SKY,
+    WHITE,
+    YELLOW,
+    LineBatch,
+    draw_crosses,
+    draw_lines,
+    draw_ring,
+    draw_words,
+)
 from .pick_session import PickSession, Preview
 from .picture_frame import PictureFrame
+from .preferences import Settings
 
-HIDDEN = (*SKY[:3], 0.45)
+HIDDEN_SHARE = 0.45
 
 
-def draw_session(
-    context: Any,
-    frame: PictureFrame,
-    session: PickSession,
-    preview: Preview,
-    cursor: tuple[float, float],
+def draw_preview(
+    frame: PictureFrame, session: PickSession, preview: Preview, settings: Settings, scale: float
 ) -> None:
-    """The live wire-frame, crosses at the picks and the cursor, and words beside it."""
-    scale = context.preferences.system.ui_scale
+    """The live wire-frame, and crosses at the picks."""
+    color = settings.object_color
     lines = [(frame.region_points(line.pixels), line.visible) for line in preview.lines]
     hidden = [pixels for pixels, visible in lines if not visible]
-    LineBatch(hidden, HIDDEN, 1.0).draw(scale)
-    draw_lines([pixels for pixels, visible in lines if visible], SKY, 1.8, scale)
-    draw_crosses(frame.region_points(session.view_pixels()), YELLOW, scale)
-    draw_crosses(np.array([cursor]), WHITE, scale)
+    LineBatch(hidden, (*color[:3], HIDDEN_SHARE * color[3]), 1.0).draw(scale)
+    seen = [pixels for pixels, visible in lines if visible]
+    draw_lines(seen, color, settings.line_width, scale)
+    draw_crosses(frame.region_points(session.view_pixels()), settings.active_color, scale)
+
+
+def draw_prompt(
+    context: Any,
+    session: PickSession,
+    preview: Preview,
+    snapped: str,
+    cursor: tuple[float, float],
+) -> None:
+    """Words beside the cursor: what the click is for, where it is, what is wrong."""
     rows = [
         (session.prompt, WHITE),
         (preview.words, YELLOW),
         (session.typed_words, SKY),
+        (snapped, WHITE),
         (preview.complaint, ORANGE),
     ]
     size = (context.region.width, context.region.height)
-    draw_words(rows, *cursor, size, scale)
+    draw_words(rows, *cursor, size, context.preferences.system.ui_scale)
+
+
+def draw_handles(
+    context: Any, frame: PictureFrame, operator: Any, handles: Any, held: Any, aim: Any
+) -> None:
+    """The picks of an object as rings; while one is dragged, the object that it would make."""
+    from .pick_handles import view_pixels
+
+    scale, look = context.preferences.system.ui_scale, operator.settings
+    inner = frame.intrinsics
+    places = frame.region_points(view_pixels(handles.cell.camera, handles.thing))
+    for (handle, _), at in zip(handles.places.items(), places, strict=True):
+        if handle != held:
+            draw_ring(at, look.active_color, scale)
+    if held is None or aim is None:
+        rows = [("drag a pick", WHITE)]
+        draw_words(rows, *operator.cursor, (context.region.width, context.region.height), scale)
+        return
+    preview = handles.moved(held, aim.pixel)
+    lines = [frame.region_points(line.pixels) for line in preview.lines if line.visible]
+    draw_lines(lines, look.object_color, look.line_width, scale)
+    at = frame.region_points(inner.undistorted().project(inner.rays(aim.pixel[None])))
+    draw_ring(at[0], look.active_color, scale)
+    loupe_lines = [(line.pixels, look.object_color) for line in preview.lines]
+    snapped = operator.paint_aim(context, frame, loupe_lines)
+    rows = [
+        (f"{held[0]} {held[1] + 1}", WHITE),
+        (preview.words, YELLOW),
+        (snapped, WHITE),
+        (preview.complaint, ORANGE),
+    ]
+    draw_words(rows, *operator.cursor, (context.region.width, context.region.height), scale)

@@ -11,6 +11,7 @@ import numpy as np
 from ..core.arrays import Array
 from ..core.camera import Camera
 from ..core.errors import MonocellError
+from ..core.modelling.mapped_covariance import point_covariance_on_plane
 from ..core.modelling.reverse_mapping import points_on_plane
 from ..core.modelling.solve import solve_sketch
 from ..core.picture.wireframe import Polyline, wireframe
@@ -244,14 +245,22 @@ class PickSession:
         return count < len(stage.prompts)
 
     def _place(self, pixel: Array) -> str:
-        """Where a click would hit the reference, in metres; nothing for what is not on it."""
+        """Where a click would hit the reference, in metres, and how surely; else nothing."""
         stage = self.stage
         on_it = stage is not None and stage.role in ("base", "rim") and self.plan.held == "stands"
-        if not on_it or not isinstance(self.reference, ReferencePlane):
+        return self.place(pixel) if on_it else ""
+
+    def place(self, pixel: Array) -> str:
+        """Where a pixel (2,) hits the reference, in metres, and how surely."""
+        if not isinstance(self.reference, ReferencePlane):
             return ""
         # adding nought turns -0.000 into 0.000
         x, y, z = np.round(points_on_plane(self.camera, self.reference, pixel[None])[0], 3) + 0.0
-        return f"x {x:.3f}   y {y:.3f}   z {z:.3f} m"
+        covariance = point_covariance_on_plane(
+            self.camera, self.reference, pixel[None], self.sigma
+        )[0]
+        worst = 1e3 * float(np.sqrt(max(np.linalg.eigvalsh(covariance)[-1], 0.0)))
+        return f"x {x:.3f}   y {y:.3f}   z {z:.3f} m   ± {worst:.{1 if worst < 100 else 0}f} mm"
 
     def _lines(self, thing: Primitive) -> tuple[Polyline, ...]:
         return wireframe(thing, self._pinhole_camera())

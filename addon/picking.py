@@ -36,10 +36,16 @@ class PicksOnPicture(OnPicture):
         )
         self._shown = None
         begun = self.begin(context, event)
+        context.window_manager.monocell_work.picking = "RUNNING_MODAL" in begun
         # a tool's own click is the first pick
         if begun == {"RUNNING_MODAL"} and event.type == "LEFTMOUSE" and event.value == "PRESS":
             self.handle(context, context.area, event)
         return begun
+
+    def end(self, context):
+        """Let the sightings be seen again."""
+        context.window_manager.monocell_work.picking = False
+        super().end(context)
 
     def handle(self, context, area, event):
         """A pick, a typed size, or another key of ours."""
@@ -64,10 +70,15 @@ class PicksOnPicture(OnPicture):
 
     def paint(self, context, frame):
         """The object as it would be with a click at the cursor."""
-        from .pick_drawing import draw_session
+        from .pick_drawing import draw_preview, draw_prompt
 
-        preview = self._preview(self.pixel(context, context.area))
-        draw_session(context, frame, self._session, preview, self.cursor)
+        aim = self.aim(context, context.area)
+        preview = self._preview(None if aim is None else aim.pixel)
+        scale = context.preferences.system.ui_scale
+        draw_preview(frame, self._session, preview, self.settings, scale)
+        lines = [(line.pixels, self.settings.object_color) for line in preview.lines]
+        snapped = self.paint_aim(context, frame, lines)
+        draw_prompt(context, self._session, preview, snapped, self.cursor)
 
     def keys(self):
         """What the status bar tells."""
@@ -84,10 +95,10 @@ class PicksOnPicture(OnPicture):
         )
 
     def _clicked(self, context, area, event):
-        pixel = self.pixel(context, area)
-        if pixel is None:
+        aim = self.aim(context, area)
+        if aim is None:
             return None
-        session = self._session
+        pixel, session = aim.pixel, self._session
         if session.complete and not event.shift:
             return self._finish(context)
         if session.closes(pixel, self._reach(context, area)):

@@ -46,6 +46,11 @@ class PictureFrame:
         pixel = self.intrinsics.project(pinhole.rays(self.view_pixel(x, y)[None]))[0]
         return pixel if np.isfinite(pixel).all() else None
 
+    def view_pixels(self, picture_pixels: ArrayLike) -> Array:
+        """Pixels (N, 2) of the picture as it came to undistorted ones of the view."""
+        rays = self.intrinsics.rays(np.asarray(picture_pixels, dtype=float))
+        return self.intrinsics.undistorted().project(rays)
+
     def region_points(self, view_pixels: ArrayLike) -> Array:
         """Undistorted pixels (N, 2) to region points (N, 2)."""
         pixels = np.asarray(view_pixels, dtype=float)

@@ -142,6 +142,7 @@ class Work(bpy.types.PropertyGroup):
     name: StringProperty(name="What it has come to")
     share: FloatProperty(name="How much is done", min=0.0, max=1.0)
     cancel: BoolProperty(name="Whether it was told to end")
+    picking: BoolProperty(name="Whether an object is being picked, and sightings are hidden")
 
 
 CLASSES = (SightingRow, ReferenceRow, SceneCell, SceneInputs, Work)

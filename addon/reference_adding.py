@@ -69,23 +69,23 @@ class PicksUpright(OnPicture, NeedsPose):
     def invoke(self, context, event):
         """Wait for the clicks."""
         self.on = plane_name(context.scene)
-        self._pixels = []
+        self.pixels = []
         return self.begin(context, event)
 
     def handle(self, context, area, event):
         """A click, or one taken back."""
         if event.value != "PRESS":
             return None
-        pixel = self.pixel(context, area)
+        aim = self.aim(context, area)
         if event.type == "BACK_SPACE":
-            self._pixels = self._pixels[:-1]
-        if event.type != "LEFTMOUSE" or pixel is None:
+            self.pixels = self.pixels[:-1]
+        if event.type != "LEFTMOUSE" or aim is None:
             return None
-        self._pixels.append(pixel.tolist())
-        if len(self._pixels) < self.clicks:
+        self.pixels.append(aim.pixel.tolist())
+        if len(self.pixels) < self.clicks:
             return None
         self.end(context)
-        self.picks = json.dumps(self._pixels)
+        self.picks = json.dumps(self.pixels)
         return self.execute(context)
 
     def paint(self, context, frame):
@@ -96,7 +96,7 @@ class PicksUpright(OnPicture, NeedsPose):
 
     def keys(self):
         """What the status bar tells."""
-        count = f"{len(self._pixels) + 1} of {self.clicks}"
+        count = f"{len(self.pixels) + 1} of {self.clicks}"
         return (
             ("MOUSE_LMB", f"Upright {self.kind} on {self.on}: foot {count}"),
             ("EVENT_BACKSPACE", "    Take back"),

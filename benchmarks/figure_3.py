@@ -38,7 +38,7 @@ from monocell.core.primitives import Primitive
 from monocell.headless.pictures import write_picture
 from monocell.headless.told import progress, table, warn
 
-SAMPLES = 48
+SAMPLES = 16
 HEADER = (
     "object",
     "kind",

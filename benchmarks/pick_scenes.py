@@ -67,7 +67,7 @@ def random_camera(rng: np.random.Generator) -> Camera:
     rise = np.radians(rng.uniform(20, 55))
     eye = away * np.array([np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)])
     up = np.array([rng.normal(0, 0.05), rng.normal(0, 0.05), 1.0])
-    pose = Pose.looking_at(eye, rng.uniform(-0.05, 0.05, 3) + [0, 0, 0.1], up)
+    pose = Pose.looking_at(eye, rng.normal([0, 0, 0.1], 0.03), up)
     return Camera(
         Intrinsics(1280, 960, 1000.0 * away / 2, 995.0 * away / 2, 650.3, 470.8, LENS), pose
     )

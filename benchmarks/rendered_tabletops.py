@@ -97,7 +97,8 @@ def _light(plan: TabletopPlan) -> np.ndarray:
 
 def paint(scene: Any, plan: TabletopPlan) -> None:
     """Give each thing of the plan its look, and the cans as many facets as truth needs."""
-    from monocell.scene.meshes import cylinder, fill_mesh
+    from monocell.core.shape.tessellation import cylinder
+    from monocell.scene.meshes import fill_mesh
 
     for thing, look in zip(plan.things, plan.looks, strict=True):
         ob = scene.objects[thing.name]

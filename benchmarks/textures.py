@@ -10,7 +10,7 @@ ones (boxes and cylinders solved from picks that are 1 px off, the camera off by
 in the textures. Columns: the mean absolute difference from the picture, in percent of the range of
 an 8-bit sRGB value, over all pixels that truly show an object and over those clear of every edge;
 and the same from 20 degrees aside against a true render, over all object pixels, and over those
-whose surface the first picture shows too. `plain` are the same with one colour for each object.
+whose surface the first picture shows too. `plain` is the true model with one colour an object.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from monocell.core.look.looks import looks_of
 from monocell.core.look.sure_pixels import Sight
 from monocell.core.look.texture_files import with_looks
 from monocell.core.look.textures import SMALLEST_ANGLE, eight_bit_srgb
-from monocell.core.modelling.solve import SOLVERS, model_cell
+from monocell.core.modelling.solve import model_cell
 from monocell.core.shape.charts import chart_of
-from monocell.core.shape.hits import SeenMap, face_names, occluded, seen_map
+from monocell.core.shape.hits import SeenMap, bounds, face_names, occluded, seen_map
 from monocell.headless.demo.hand import pick_objects
 from monocell.headless.told import progress, table
 from textured_cells import KINDS, textured_cell, turned_aside
@@ -38,6 +38,8 @@ from textured_cells import KINDS, textured_cell, turned_aside
 PICK_SIGMA = 1.0
 CAMERA_SIGMA = np.array([np.radians(0.006) / np.sqrt(3)] * 3 + [0.3e-3 / np.sqrt(3)] * 3)
 ASIDE_DEGREES = 20.0
+# what a hand picks here
+PICKED = ("box", "cylinder")
 HEADER = ("cell", "model", "all px", "off edges", "aside, all", "aside, seen", "seen aside")
 
 
@@ -76,7 +78,8 @@ def _measured(seed: int, samples: int, folder: Path) -> dict[str, tuple[float, .
         looks = list(looks_of(cell, picture, textured=names))
         dressed = with_looks(cell, looks, folder / f"{model}.cell.json")
         plain = cell.with_objects(_without_textures(thing) for thing in dressed.objects)
-        for kind, shown in ((model, dressed), (f"{model}, plain", plain)):
+        shown_as = {model: dressed} if model == "estimated" else {model: dressed, "plain": plain}
+        for kind, shown in shown_as.items():
             progress(f"cell {seed}: rendering what was made with the {kind} model")
             figures[kind] = _errors(truth, aside, shown, picture, side_picture, folder, kind)
     return figures
@@ -141,9 +144,9 @@ def _estimated(truth: Cell, seed: int) -> Cell:
     rng = np.random.default_rng(seed + 1000)
     twist = rng.normal(0, CAMERA_SIGMA)
     camera = truth.camera.placed(truth.camera.pose.perturbed(twist), np.diag(CAMERA_SIGMA**2))
-    solvable = tuple(thing for thing in truth.objects if thing.kind in SOLVERS)
+    solvable = tuple(thing for thing in truth.objects if thing.kind in PICKED)
     sketches = pick_objects(truth.camera, solvable, PICK_SIGMA, seed)
-    known = tuple(thing for thing in truth.objects if thing.kind not in SOLVERS)
+    known = tuple(thing for thing in truth.objects if thing.kind not in PICKED)
     solved, _ = model_cell(replace(truth, camera=camera, objects=known, sketches=sketches))
     return _stripped(solved)
 
@@ -166,15 +169,36 @@ def _photographs(truth: Cell, aside: Camera, samples: int) -> tuple[np.ndarray, 
 
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     with Stage(WorkCell(truth.camera, truth.objects)) as stage:
-        lights = [stage.linear(camera=camera, samples=samples) for camera in (truth.camera, aside)]
-    first, second = (np.ascontiguousarray(eight_bit_srgb(light)[..., ::-1]) for light in lights)
+        first, second = (
+            _placed(stage.window(window, camera=camera, samples=samples), window, camera)
+            for camera in (truth.camera, aside)
+            for window in (_window(truth, camera),)
+        )
     return first, second
 
 
 def _flat(cell: Cell, camera: Camera) -> np.ndarray:
     from monocell.scene.flat_view import flat_view
 
-    return np.ascontiguousarray(eight_bit_srgb(flat_view(cell, camera=camera))[..., ::-1])
+    window = _window(cell, camera)
+    return _placed(flat_view(cell, camera=camera, window=window, samples=16), window, camera)
+
+
+def _window(cell: Cell, camera: Camera) -> tuple[int, int, int, int]:
+    """The part of the picture that the objects are in, with room round it."""
+    edges = np.array([bounds(thing, camera) for thing in cell.objects])
+    low = np.maximum(edges[:, :2].min(axis=0) - 20, 0)
+    inner = camera.intrinsics
+    high = np.minimum(edges[:, 2:].max(axis=0) + 20, [inner.width, inner.height])
+    return int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
+
+
+def _placed(light: np.ndarray, window: tuple[int, int, int, int], camera: Camera) -> np.ndarray:
+    """The window in a picture of the camera's size, 8 bits, blue, green, red; else black."""
+    x, y, width, height = window
+    picture = np.zeros((camera.intrinsics.height, camera.intrinsics.width, 3), np.uint8)
+    picture[y : y + height, x : x + width] = eight_bit_srgb(light)[..., ::-1]
+    return picture
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from .camera import Camera
 from .composite import Composite
 from .errors import InvalidValue, NoPose
 from .mount import Mount
-from .primitives import Primitive
+from .primitives import KINDS, Primitive
 from .reference import PendingReference, Reference
 from .references.placed import reference_of_feature
 from .relation import RELATIONS, Relation
@@ -123,7 +123,7 @@ def check_names(
         if thing.on is not None:
             _check_path(thing.on, f"{where}.on", thing.name, known, named)
         for j, relation in enumerate(thing.relations):
-            _check_relation(relation, f"{where}.relations[{j}]", thing.name, known, named)
+            _check_relation(relation, f"{where}.relations[{j}]", thing, known, named)
     rigid_bodies(things, composites)
 
 
@@ -144,27 +144,45 @@ def _check_path(
         listed = ", ".join(sorted(references)) or "none at all"
         if path in things:
             listed = f"an object of that name: say which of its features, such as {path}.top"
-        raise InvalidValue(f"{where}: no reference is called {path!r}; there is {listed}")
+        told = f", and no object {path.rpartition('.')[0]!r}" if "." in path else ""
+        raise InvalidValue(f"{where}: no reference is called {path!r}{told}; there is {listed}")
     if owner == own:
         raise InvalidValue(f"{where}: {path!r} is a feature of its own; name something else")
-    thing, feature = things[owner], path.rpartition(".")[2]
-    if isinstance(thing, Primitive) and feature not in feature_names(thing):
-        raise InvalidValue(
-            f"{where}: {path!r}: a {thing.kind} has no feature {feature!r}; it has "
-            f"{', '.join(feature_names(thing))}"
-        )
+    _check_feature(things[owner], path.rpartition(".")[2], f"{where}: {path!r}")
 
 
 def _check_relation(
-    relation: Relation, where: str, own: str, references: Collection[str], things: Named
+    relation: Relation,
+    where: str,
+    own: Primitive | Sketch,
+    references: Collection[str],
+    things: Named,
 ) -> None:
     if RELATIONS[relation.kind] != "object":
-        _check_path(relation.to, f"{where}.to", own, references, things)
-    elif relation.to == own or relation.to not in things:
-        told = "is the object itself" if relation.to == own else "is the name of no object"
+        _check_path(relation.to, f"{where}.to", own.name, references, things)
+    elif relation.to == own.name or relation.to not in things:
+        told = "is the object itself" if relation.to == own.name else "is the name of no object"
         raise InvalidValue(f"{where}.to: {relation.to!r} {told}; name another object")
     if relation.about is not None:
-        _check_path(relation.about, f"{where}.about", own, references, things)
+        _check_path(relation.about, f"{where}.about", own.name, references, things)
+    if relation.own is None:
+        return
+    sizes = KINDS[own.kind].size_names
+    if relation.kind != "same_size":
+        _check_feature(own, relation.own, f"{where}.own")
+    elif relation.own not in sizes:
+        raise InvalidValue(
+            f"{where}.own: a {own.kind} has no size {relation.own!r}; it has {', '.join(sizes)}"
+        )
+
+
+def _check_feature(thing: Primitive | Sketch, name: str, where: str) -> None:
+    # which features a sketch will have, a prism's sides above all, is not known yet
+    if isinstance(thing, Primitive) and name not in feature_names(thing):
+        raise InvalidValue(
+            f"{where}: a {thing.kind} has no feature {name!r}; it has "
+            f"{', '.join(feature_names(thing))}"
+        )
 
 
 def check_sightings(sightings: Sequence[Sighting], mount: Mount | None) -> None:

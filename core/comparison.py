@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,8 @@ from .cell import Cell
 from .covariance import inverse_information
 from .errors import InvalidValue
 from .pose import Pose
-from .primitives import Box, Primitive
+from .primitives import KINDS, Primitive, Prism
+from .same_solid import corner_errors, retold
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +36,12 @@ class PoseError:
 
 @dataclass(frozen=True, eq=False)
 class ObjectError:
-    """Of an object: position (3,) in world axes, its sizes, and its axis' tilt in radians."""
+    """Of an object: position (3,) in world axes, its sizes, and its axis' tilt in radians.
+
+    Sizes are in the order of the truth's `size_names`. `rotation` is the angle of the whole
+    rotation that is off, None for what shows no turn about its axis. `corners` (2 N,) are the
+    distances of a prism's corners from the true ones, None where their number is another.
+    """
 
     name: str
     kind: str
@@ -44,6 +51,14 @@ class ObjectError:
     true_sizes: Array
     size_sigma: Array | None
     tilt: float
+    tilt_sigma: float | None = None
+    rotation: float | None = None
+    rotation_sigma: float | None = None
+    corners: Array | None = None
+
+    @property
+    def size_names(self) -> tuple[str, ...]:
+        return KINDS[self.kind].size_names
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +69,7 @@ class Comparison:
     objects: tuple[ObjectError, ...]
     missing: tuple[str, ...]
     surplus: tuple[str, ...]
+    warnings: tuple[str, ...] = ()
 
 
 def compare_cells(truth: Cell, estimate: Cell) -> Comparison:
@@ -71,6 +87,7 @@ def compare_cells(truth: Cell, estimate: Cell) -> Comparison:
         tuple(object_error(known[name], thing) for name, thing in found.items() if name in known),
         tuple(name for name in known if name not in found),
         tuple(name for name in found if name not in known),
+        tuple(_other_corners(known, found)),
     )
 
 
@@ -90,31 +107,50 @@ def pose_error(truth: Camera, estimate: Camera) -> PoseError:
 
 
 def object_error(truth: Primitive, estimate: Primitive) -> ObjectError:
-    """Estimate minus truth; a box may have been seen with x and y exchanged."""
+    """Estimate minus truth, however the estimate's frame lies in the same solid.
+
+    Raises InvalidValue for two kinds.
+    """
     if truth.kind != estimate.kind:
         raise InvalidValue(f"{truth.name}: a {truth.kind} in truth, a {estimate.kind} in the cell")
-    order = _matching_sizes(truth, estimate)
-    sigma, axis = estimate.size_sigma(), estimate.world_from_object.rotation[:, 2]
-    upright = float(abs(axis @ truth.world_from_object.rotation[:, 2]))
+    told, sigma = retold(truth, estimate), estimate.size_sigma()
+    corners = None
+    if isinstance(truth, Prism) and isinstance(estimate, Prism):
+        corners = corner_errors(truth, estimate)
+    tilt_sigma, rotation_sigma = _turn_sigmas(estimate, told.axes[:, 2])
     return ObjectError(
         truth.name,
         truth.kind,
         estimate.world_from_object.translation - truth.world_from_object.translation,
         estimate.position_sigma(),
-        estimate.sizes[order] - truth.sizes,
+        estimate.sizes[told.order] - truth.sizes,
         truth.sizes,
-        None if sigma is None else sigma[order],
-        float(np.arccos(np.clip(upright, -1, 1))),
+        None if sigma is None else sigma[told.order],
+        told.tilt,
+        tilt_sigma,
+        told.rotation,
+        None if told.rotation is None else rotation_sigma,
+        corners,
     )
 
 
-def _matching_sizes(truth: Primitive, estimate: Primitive) -> list[int]:
-    if not isinstance(truth, Box):
-        return list(range(len(truth.sizes)))
-    turned = abs(
-        estimate.world_from_object.rotation[:, 0] @ truth.world_from_object.rotation[:, 1]
-    ) > abs(estimate.world_from_object.rotation[:, 0] @ truth.world_from_object.rotation[:, 0])
-    return [1, 0, 2] if turned else [0, 1, 2]
+def _other_corners(known: Mapping[str, Primitive], found: Mapping[str, Primitive]) -> Iterator[str]:
+    for name, thing in found.items():
+        truth = known.get(name)
+        if isinstance(thing, Prism) and isinstance(truth, Prism):
+            counts = len(thing.polygon), len(truth.polygon)
+            if counts[0] != counts[1]:
+                yield f"{name}: has {counts[0]} corners, the true one {counts[1]}: not matched"
+
+
+def _turn_sigmas(estimate: Primitive, axis: Array) -> tuple[float | None, float | None]:
+    """1 sigma of the axis' tilt, and of the whole rotation, in radians."""
+    if estimate.covariance is None:
+        return None, None
+    covariance = estimate.covariance[:3, :3]
+    whole = float(np.trace(covariance))
+    across = whole - float(axis @ covariance @ axis)
+    return float(np.sqrt(max(0.0, across))), float(np.sqrt(whole))
 
 
 def _twist(motion: Pose) -> Array:

@@ -14,7 +14,7 @@ import numpy as np
 from .arrays import Array, frozen
 from .covariance import checked_covariance
 from .errors import InvalidValue
-from .pose import Pose
+from .pose import FARTHEST, Pose
 from .references.sources import Source
 
 # sine of the tilt (about 2 degrees) up to which a plane counts as a floor
@@ -42,7 +42,7 @@ class ReferencePlane:
     source: Source | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "point", frozen(self.point, (3,), f"{self.name}: point"))
+        object.__setattr__(self, "point", _place(self.point, f"{self.name}: point"))
         object.__setattr__(self, "normal", _unit(self.normal, f"{self.name}: normal"))
         _check_error(self)
 
@@ -77,7 +77,7 @@ class ReferenceLine:
     source: Source | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "point", frozen(self.point, (3,), f"{self.name}: point"))
+        object.__setattr__(self, "point", _place(self.point, f"{self.name}: point"))
         direction = _unit(self.direction, f"{self.name}: direction")
         object.__setattr__(self, "direction", direction)
         _check_error(self)
@@ -119,6 +119,16 @@ def _check_error(reference: Reference) -> None:
     if reference.by_camera is not None:
         matrix = frozen(reference.by_camera, (6, 6), f"{name}: by_camera")
         object.__setattr__(reference, "by_camera", matrix)
+
+
+def _place(point: Array, name: str) -> Array:
+    place = frozen(point, (3,), name)
+    if np.abs(place).max() > FARTHEST:
+        raise InvalidValue(
+            f"{name}: {np.abs(place).max():.3g} m is farther than any cell ({FARTHEST:g} m); "
+            "positions are in metres"
+        )
+    return place
 
 
 def _unit(vector: Array, name: str) -> Array:

@@ -14,16 +14,25 @@ import bpy
 from ..core.arrays import Array
 from ..core.camera import Camera
 from ..core.cell import Cell
-from .rendering import render_linear
+from .rendering import render_linear, render_window
 from .textures import painted_mesh
 from .transforms import matrix_of
 
 
-def flat_view(cell: Cell, *, camera: Camera | None = None, samples: int = 16) -> Array:
+def flat_view(
+    cell: Cell,
+    *,
+    camera: Camera | None = None,
+    window: tuple[int, int, int, int] | None = None,
+    samples: int = 16,
+) -> Array:
     """What `camera` (the cell's own without) sees, (H, W, 3) float32 red, green, blue; else black.
 
+    `window` (x, y, width, height) is the part of the picture that is rendered and returned.
+
     Everything is built in a scene of its own that is gone afterwards. Raises NoPose, PictureError
-    for a texture that can't be read, RenderFailed when Cycles gives no picture.
+    for a texture that can't be read, InvalidValue for a window outside the picture, RenderFailed
+    when Cycles gives no picture.
     """
     camera = camera or cell.standing_camera()
     scene, built = bpy.data.scenes.new("monocell flat view"), []
@@ -34,6 +43,8 @@ def flat_view(cell: Cell, *, camera: Camera | None = None, samples: int = 16) ->
             built += [ob, *made]
             ob.matrix_world = matrix_of(thing.world_from_object)
             scene.collection.objects.link(ob)
+        if window is not None:
+            return render_window(scene, camera, window, samples=samples, bounces=0)
         return render_linear(scene, camera, samples=samples, bounces=0)
     finally:
         _remove(scene, built)

@@ -22,7 +22,7 @@ from ..core.cell import Cell
 from ..core.document.entries import camera_entry, composite_entry, object_entry
 from ..core.document.reference_entries import reference_entry
 from ..core.errors import InvalidValue, RenderFailed
-from ..core.orphans import without_lost_joints
+from ..core.links import without_lost_joints
 from ..core.primitives import Primitive
 from ..core.shape.tessellation import tessellated
 from .blender_camera import DISTORTION, place_camera

@@ -65,6 +65,11 @@ def is_modelled(ob: Any) -> bool:
     return ob.type == "MESH" and ENTRY in ob
 
 
+def built_name(ob: Any) -> str:
+    """The name in the document that a modelled object was built with."""
+    return str(ob[ENTRY]["name"])
+
+
 def fill_object(ob: Any, thing: Primitive) -> None:
     """Give an object the mesh, colour, place and entry of `thing`."""
     fill_mesh(ob.data, tessellated(thing))
@@ -109,11 +114,6 @@ def read_object(ob: Any) -> Primitive:
         shape = scaled(shape, scale)
     centre = now[:3] @ [*shape.world_from_object.translation, 1.0]
     return replace(shape, world_from_object=Pose(pose.rotation, centre))
-
-
-def name_when_built(ob: Any) -> str:
-    """The name in the document that a modelled object was last built by."""
-    return str(ob[ENTRY]["name"])
 
 
 def _name(ob: Any) -> str:

@@ -35,20 +35,16 @@ class AddPoint(OnPicture, NeedsCell, bpy.types.Operator):
 
     def handle(self, context, area, event):
         """The click."""
-        pixel = self.pixel(context, area)
-        if event.type != "LEFTMOUSE" or event.value != "PRESS" or pixel is None:
+        aim = self.aim(context, area)
+        if event.type != "LEFTMOUSE" or event.value != "PRESS" or aim is None:
             return None
         self.end(context)
-        self.pixel_at = pixel.tolist()
+        self.pixel_at = aim.pixel.tolist()
         return self.execute(context)
 
     def paint(self, context, frame):
-        """A cross under the cursor."""
-        import numpy as np
-
-        from ..drawing import WHITE, draw_crosses
-
-        draw_crosses(np.array([self.cursor]), WHITE, context.preferences.system.ui_scale)
+        """The cursor, what it snaps to, and the loupe."""
+        self.paint_aim(context, frame)
 
     def keys(self):
         """What the status bar tells."""

@@ -28,6 +28,8 @@ from .textures import eight_bit_srgb
 # colour is stored at half the resolution, over 16; half of that reaches across an edge
 RIM_PIXELS, JPEG_RIM_PIXELS = 2.0, 6.0
 FEWEST_PIXELS = 30
+# nearer to an edge than this, a pixel shows two things
+LEAST_RIM_PIXELS = 1.0
 # sRGB levels that one uniform surface spans under one light, noise included
 SAME_LEVELS = 16.0
 SMALLEST_UNIFORM_SHARE = 0.85
@@ -108,12 +110,12 @@ def _sampled_pixels(sight: Sight, index: int, jpeg: bool) -> tuple[Mask, tuple[s
     thing = sight.things[index]
     known = SIGMAS * edge_sigma_pixels(thing, sight.camera)
     wanted = known + (JPEG_RIM_PIXELS if jpeg else RIM_PIXELS)
-    for rim in (wanted, wanted / 2, 1.0, 0.0):
-        sure = _off_inner_edges(sight, index, min(rim, wanted))
+    for rim in (wanted, wanted / 2, max(wanted / 4, LEAST_RIM_PIXELS)):
+        sure = _off_inner_edges(sight, index, rim)
         count = int(sure.sum())
-        if count >= FEWEST_PIXELS or rim == 0.0:
+        if count >= FEWEST_PIXELS:
             break
-    if count and (count < FEWEST_PIXELS or rim < wanted / 2):
+    if 0 < count < FEWEST_PIXELS or rim < wanted / 2:
         return sure, (
             f"{thing.name}: its colour comes from {count} px, {rim:.1f} px off its edges, where "
             f"{wanted:.1f} px would be sure",

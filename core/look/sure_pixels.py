@@ -94,8 +94,8 @@ def edge_sigma_pixels(thing: Primitive, camera: Camera) -> float:
         return 0.0
     sigma = np.sqrt(np.diag(thing.covariance))
     reach = float(np.linalg.norm(thing.half_extent))
-    # a size moves both ends by half of it; a radius moves the edge by the whole
-    shape = float(np.linalg.norm(sigma[6 : 6 + len(thing.size_names)]))
+    # a length moves both ends by half of it, a radius or a corner moves the edge by the whole
+    shape = float(sigma[6:].max(initial=0.0))
     metres = np.linalg.norm([*sigma[3:6], *(reach * sigma[:3]), shape])
     inner = camera.intrinsics
     away = float(np.linalg.norm(thing.world_from_object.translation - camera.centre_world))

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array, Mask
 from ..picture.pictures import Light, encoded_light
-from ..shape.charts import Chart, chart_of
+from ..shape.charts import Chart, FlatChart, chart_of
 from ..shape.hits import face_names
 from .sure_pixels import SIGMAS, Sight, edge_sigma_pixels
 
@@ -27,6 +27,8 @@ SMALLEST_ANGLE = math.radians(10)
 RIM_PIXELS = 1.5
 # what the model says is the face is taken from the picture up to here, though not called seen
 LIKELY_RIM_PIXELS = 1.0
+# unless a round side turns away there: a pixel of background would become a broad band
+LIKELY_ROUND_ANGLE = math.radians(25)
 # made-up texels this near to a seen one are its continuation
 BESIDE_PIXELS = 3.0
 PADDING_TEXELS = 4
@@ -66,8 +68,7 @@ def face_picture(
     thing has not.
     """
     thing = sight.things[index]
-    chart = chart_of(thing, face)
-    number = face_names(thing).index(face)
+    chart, number = chart_of(thing, face), face_names(thing).index(face)
     rim = max(RIM_PIXELS, SIGMAS * edge_sigma_pixels(thing, sight.camera))
     sure = sight.sure(index, rim, number)
     nodes = _grid(NODES, NODES)
@@ -81,16 +82,11 @@ def face_picture(
     share = float((looked.seen & on_face).sum() / max(on_face.sum(), 1))
     if share < SMALLEST_SHARE or looked.seen.sum() < FEWEST_TEXELS:
         return NotSeen(face, f"only {100 * share:.1f} % of it is seen")
+    likely, beside = _around(sight, index, number, chart, looked)
     shape = rows, columns
     sampled = _sampled(light, looked.pixels.reshape(*shape, 2))
-    likely = looked.seen | (
-        looked.steep & _at(sight.sure(index, LIKELY_RIM_PIXELS, number), looked.pixels)
-    )
-    shown = (sight.seen.owner == index) & (sight.seen.face == number)
-    beside = _at(_grown(shown), looked.pixels) & looked.facing
-    filled = _filled(
-        sampled, likely.reshape(shape), beside.reshape(shape), color[::-1].astype(np.float32)
-    )
+    own = color[::-1].astype(np.float32)
+    filled = _filled(sampled, likely.reshape(shape), beside.reshape(shape), own)
     alpha = np.where(looked.seen, 255, 0).astype(np.uint8).reshape(*shape, 1)
     return FacePicture(face, np.concatenate([eight_bit_srgb(filled), alpha], axis=2), share)
 
@@ -105,13 +101,12 @@ def eight_bit_srgb(light: Light) -> NDArray[np.uint8]:
 class _Look:
     """Where (s, t) pairs (N, 2) of a face are imaged: `pixels` (N, 2), NaN where nowhere.
 
-    `facing` tells whether the surface is turned towards the camera there, `steep` whether it is
-    seen steeply enough, and `seen` whether the picture surely shows it.
+    `steepness` is the sine of the angle between the surface and the ray, below 0 where it is turned
+    away, and `seen` tells whether the picture surely shows it.
     """
 
     pixels: Array
-    facing: Mask
-    steep: Mask
+    steepness: Array
     seen: Mask
 
     @staticmethod
@@ -122,9 +117,19 @@ class _Look:
         rise = np.einsum("ij,ij->i", pose.rotate(chart.normals(st)), towards)
         steepness = rise / np.linalg.norm(towards, axis=1)
         pixels = camera.project(points)
-        steep = steepness >= math.sin(SMALLEST_ANGLE)
-        seen = steep & _at(sure, pixels) & chart.covers(st)
-        return _Look(pixels, steepness > 0, steep, seen)
+        seen = (steepness >= math.sin(SMALLEST_ANGLE)) & _at(sure, pixels) & chart.covers(st)
+        return _Look(pixels, steepness, seen)
+
+
+def _around(
+    sight: Sight, index: int, number: int, chart: Chart, looked: _Look
+) -> tuple[Mask, Mask]:
+    """Texels that show the face if the model is right, and those on or beside its picture."""
+    by_model = _at(sight.sure(index, LIKELY_RIM_PIXELS, number), looked.pixels)
+    least = SMALLEST_ANGLE if isinstance(chart, FlatChart) else LIKELY_ROUND_ANGLE
+    likely = looked.seen | (by_model & (looked.steepness >= math.sin(least)))
+    shown = (sight.seen.owner == index) & (sight.seen.face == number)
+    return likely, _at(_grown(shown), looked.pixels) & (looked.steepness > 0)
 
 
 def _grid(columns: int, rows: int) -> Array:
@@ -190,9 +195,9 @@ def _grown(mask: Mask) -> Mask:
 
 def _why(sight: Sight, index: int, number: int, looked: _Look) -> str:
     """What keeps a face from being seen, the plainest cause first."""
-    if not looked.facing.any():
+    if looked.steepness.max() <= 0:
         return "it is turned away from the camera"
-    if not looked.steep.any():
+    if looked.steepness.max() < math.sin(SMALLEST_ANGLE):
         return f"it is seen at less than {math.degrees(SMALLEST_ANGLE):.0f} degrees"
     if not sight.camera.intrinsics.contains(np.nan_to_num(looked.pixels, nan=-1e4)).any():
         return "it lies outside the picture"

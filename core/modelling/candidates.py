@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -70,11 +70,9 @@ def choose(
     good.sort(key=lambda c: (len(c.hidden), round(c.chi_squared, 6), -_volume(c)))
     best = good[0]
     rivals = [c for c in good[1:] if len(c.hidden) == len(best.hidden) and not _same(c, best)]
-    thing = best.fitted.thing
-    fitted = replace(best.fitted, thing=replace(thing, known=sketch.known))
-    hidden = hidden_warnings(thing, camera, starts.plan)
+    hidden = hidden_warnings(best.fitted.thing, camera, starts.plan)
     doubts = (*starts.warnings, *_rival_doubts(best, rivals), *hidden)
-    return Chosen(fitted, starts.plan, doubts)
+    return Chosen(best.fitted, starts.plan, doubts)
 
 
 def _fitted(

@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array
 from ..camera import Camera
 from ..errors import PictureError
-from ..primitives import Box, Cylinder, Primitive
+from ..primitives import Box, Primitive, Prism
 from .overlay_label import Color, Label, Picture, place_label
 from .wireframe import Polyline, finite_parts, wireframe
 
@@ -86,10 +86,15 @@ def caption(thing: Primitive) -> str:
     ]
     if isinstance(thing, Box):
         return f"{' × '.join(texts)} mm"
-    if isinstance(thing, Cylinder):
-        return f"radius {texts[0]}, height {texts[1]} mm"
-    pairs = zip(thing.size_names, texts, strict=True)
-    return ", ".join(f"{name} {text}" for name, text in pairs) + " mm"
+    named = [
+        f"{name.replace('_', ' ')} {text}"
+        for name, text, size in zip(thing.size_names, texts, thing.sizes, strict=True)
+        # the end of a cone that is a point has no size to tell
+        if size > 0
+    ]
+    if isinstance(thing, Prism):
+        named = [f"{len(thing.polygon)} corners", *named]
+    return ", ".join(named) + " mm"
 
 
 def blend_lines(

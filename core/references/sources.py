@@ -7,7 +7,6 @@ feature of an object (`crate.top`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -15,8 +14,10 @@ import numpy as np
 
 from ..arrays import Array, finite, frozen, positive
 from ..errors import InvalidValue
+from ..pose import FARTHEST
 
-Vector = Sequence[float] | Array
+# metres or radians: nothing is known better, and nothing in a cell worse
+LEAST_SIGMA, MOST_SIGMA = 1e-9, 1e3
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +33,7 @@ class Stated:
 
     def __post_init__(self) -> None:
         for name in ("sigma", "tilt_sigma"):
-            object.__setattr__(self, name, _not_negative(getattr(self, name), name))
+            object.__setattr__(self, name, _sigma(getattr(self, name), name))
 
     @property
     def needs(self) -> tuple[str, ...]:
@@ -55,7 +56,7 @@ class ThroughPoints:
     makes: ClassVar[tuple[str, ...]] = ("plane", "line")
 
     def __post_init__(self) -> None:
-        points = frozen(self.points, (None, 3), "points")
+        points = _near(frozen(self.points, (None, 3), "points"), "points")
         object.__setattr__(self, "points", points)
         if self.sigma is None:
             return
@@ -64,8 +65,8 @@ class ThroughPoints:
         sigma = frozen(sigma, (None,), "sigma")
         if len(sigma) != len(points):
             raise InvalidValue(f"sigma: {len(sigma)} numbers for {len(points)} points")
-        if (sigma < 0).any():
-            raise InvalidValue(f"sigma: must not be below zero, got {float(sigma.min()):g}")
+        for one in sigma:
+            _sigma(one, "sigma")
         # one exact point among others would outweigh them without bound
         if (sigma == 0).any() and (sigma > 0).any():
             raise InvalidValue("sigma: zero for some points and not for others; give each its own")
@@ -92,7 +93,7 @@ class PickedPoints:
         pixels = frozen(self.pixels, (None, 2), "pixels")
         heights = np.asarray(self.heights, dtype=float)
         heights = np.full(len(pixels), heights) if heights.ndim == 0 else heights
-        heights = frozen(heights, (None,), "heights")
+        heights = _near(frozen(heights, (None,), "heights"), "heights")
         if len(heights) != len(pixels):
             raise InvalidValue(f"heights: {len(heights)} numbers for {len(pixels)} pixels")
         object.__setattr__(self, "pixels", pixels)
@@ -166,8 +167,9 @@ class Parallel:
     makes: ClassVar[tuple[str, ...]] = ("plane",)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "distance", finite(self.distance, "distance"))
-        object.__setattr__(self, "sigma", _not_negative(self.sigma, "sigma"))
+        distance = finite(self.distance, "distance")
+        object.__setattr__(self, "distance", float(_near(np.array(distance), "distance")))
+        object.__setattr__(self, "sigma", _sigma(self.sigma, "sigma"))
 
     @property
     def needs(self) -> tuple[str, ...]:
@@ -215,10 +217,12 @@ class AlongDirection:
         for name in ("through", "along"):
             if not isinstance(getattr(self, name), str):
                 object.__setattr__(self, name, frozen(getattr(self, name), (3,), name))
+        if not isinstance(self.through, str):
+            _near(self.through, "through")
         if not isinstance(self.along, str):
             positive(np.linalg.norm(self.along), "along: its length")
         for name, typed in (("sigma", "through"), ("tilt_sigma", "along")):
-            object.__setattr__(self, name, _not_negative(getattr(self, name), name))
+            object.__setattr__(self, name, _sigma(getattr(self, name), name))
             if getattr(self, name) > 0 and isinstance(getattr(self, typed), str):
                 raise InvalidValue(
                     f"{name}: is of numbers that are typed, and {typed} names "
@@ -251,8 +255,23 @@ WAYS: dict[str, type[Source]] = {
 }
 
 
-def _not_negative(value: float, name: str) -> float:
-    number = finite(value, name)
+def _sigma(value: float, name: str) -> float:
+    """Zero, or what an error can be: metres up to a kilometre, radians up to half a turn."""
+    number, most = finite(value, name), np.pi if name == "tilt_sigma" else MOST_SIGMA
     if number < 0:
         raise InvalidValue(f"{name}: must not be below zero, got {number:g}")
+    if number > most or 0 < number < LEAST_SIGMA:
+        raise InvalidValue(
+            f"{name}: {number:g} is no error; give 0, or {LEAST_SIGMA:g} to {most:g}"
+        )
     return number
+
+
+def _near(array: Array, name: str) -> Array:
+    """Refuses places that no cell reaches to."""
+    if array.size and np.abs(array).max() > FARTHEST:
+        raise InvalidValue(
+            f"{name}: {np.abs(array).max():.3g} m is farther than any cell ({FARTHEST:g} m); "
+            "positions are in metres"
+        )
+    return array

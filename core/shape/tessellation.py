@@ -8,6 +8,7 @@ anticlockwise seen from outside.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -134,20 +135,30 @@ def prism(polygon: ArrayLike, height: float) -> Tessellation:
 
 def sphere(radius: float, segments: int = SPHERE_SEGMENTS) -> Tessellation:
     """A sphere of `segments` meridians and half as many rings, smooth all over."""
+    unit = _unit_sphere(segments)
+    return Tessellation(unit.vertices * radius, unit.corners, unit.starts, unit.smooth)
+
+
+# thousands of faces that are the same for every ball
+@lru_cache(maxsize=8)
+def _unit_sphere(segments: int) -> Tessellation:
     rings = segments // 2
     turn = np.arange(segments) * (2 * np.pi / segments)
     polar = np.arange(1, rings) * (np.pi / rings)
     x, y = np.outer(np.sin(polar), np.cos(turn)), np.outer(np.sin(polar), np.sin(turn))
     z = np.repeat(np.cos(polar), segments)
     poles = np.array([[0, 0, 1.0], [0, 0, -1.0]])
-    vertices = np.concatenate([np.stack([x.ravel(), y.ravel(), z], axis=1), poles]) * radius
+    vertices = np.concatenate([np.stack([x.ravel(), y.ravel(), z], axis=1), poles])
     ids = np.arange((rings - 1) * segments).reshape(rings - 1, segments)
     after = np.roll(ids, -1, axis=1)
     quads = np.stack([ids[:-1], ids[1:], after[1:], after[:-1]], axis=2).reshape(-1, 4)
     north, south = ids.size, ids.size + 1
     tops = np.stack([np.full(segments, north), ids[0], after[0]], axis=1)
     ends = np.stack([ids[-1], np.full(segments, south), after[-1]], axis=1)
-    return _joined(vertices, [(quads, True), (np.concatenate([tops, ends]), True)])
+    made = _joined(vertices, [(quads, True), (np.concatenate([tops, ends]), True)])
+    for array in (made.vertices, made.corners, made.starts, made.smooth):
+        array.setflags(write=False)
+    return made
 
 
 def _ring(radius: float, level: float, segments: int) -> Array:

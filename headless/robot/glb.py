@@ -22,7 +22,7 @@ from ...core.bodies import rigid_bodies
 from ...core.composite import Composite
 from ...core.document.entries import composite_from_entry, object_from_entry
 from ...core.errors import DocumentError, InvalidValue, MissingPackage
-from ...core.orphans import without_lost_joints
+from ...core.links import without_lost_joints
 from ...core.primitives import Primitive
 from ...core.rotation import rotation_from_vector
 from .environment import Environment, WorldMesh

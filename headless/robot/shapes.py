@@ -4,8 +4,8 @@
 Bullet rounds the corners of a box by its collision margin of 1 mm, which makes distances up to
 0.73 mm too large, the unsafe side (0.41 mm for a cylinder). With a margin of zero a box is exact to
 rounding and a cylinder to 0.02 mm, and neither is ever smaller than it should be on its faces. A
-ball is exact. Cones, tubes and prisms are the convex hulls of their pieces (`pieces.py`), to 0.02 mm
-as well.
+ball is exact. Cones, tubes and prisms are the convex hulls of their pieces (`pieces.py`), to
+0.02 mm as well.
 """
 
 from __future__ import annotations

@@ -60,8 +60,7 @@ def run(args: argparse.Namespace) -> int:
     cell.standing_camera()  # without a pose it is refused before the picture is read
     _refuse_nothing_to_look_at(cell, args.cell)
     assert cell.picture is not None
-    names = args.only if args.only is not None or not args.texture else None
-    textured = args.texture
+    names, textured = args.only, args.texture
     if args.texture_all:
         textured = [thing.name for thing in cell.objects if names is None or thing.name in names]
     looks = list(

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ...core.comparison import Comparison, compare_cells
+from ...core.comparison import Comparison, ObjectError, compare_cells
 from ...core.document.cell_file import read_cell
 from ..told import print_json, table, warn
 
@@ -28,7 +29,7 @@ def run(args: argparse.Namespace) -> int:
         print_json(document(comparison))
     else:
         print(told(comparison))
-    warn(_one_sided(comparison))
+    warn([*_one_sided(comparison), *comparison.warnings])
     return 0
 
 
@@ -36,14 +37,7 @@ def told(comparison: Comparison) -> str:
     """A table: error and stated 1 sigma, millimetres and degrees."""
     rows = [] if comparison.pose is None else list(_pose_rows(comparison))
     for error in comparison.objects:
-        rows.append((error.name, "position", *_length(error.position, error.position_sigma)))
-        names = ("x", "y", "z") if error.kind == "box" else ("radius", "height")
-        for i, name in enumerate(names):
-            sigma = None if error.size_sigma is None else error.size_sigma[i]
-            stated = "-" if sigma is None else f"{1e3 * sigma:.2f}"
-            rows.append(
-                ("", f"{name} of {1e3 * error.true_sizes[i]:.1f}", _signed(error.sizes[i]), stated)
-            )
+        rows += _object_rows(error)
     return table(("what", "of it", "error mm", "1 sigma"), rows)
 
 
@@ -52,23 +46,41 @@ def document(comparison: Comparison) -> dict[str, Any]:
     pose = comparison.pose
     return {
         "pose": None if pose is None else vars(pose),
-        "objects": [vars(error) for error in comparison.objects],
+        "objects": [vars(error) | {"size_names": error.size_names} for error in comparison.objects],
         "missing": comparison.missing,
         "surplus": comparison.surplus,
+        "warnings": comparison.warnings,
     }
 
 
 def _pose_rows(comparison: Comparison) -> list[tuple[str, ...]]:
     pose = comparison.pose
     assert pose is not None
-    degrees = np.degrees(np.linalg.norm(pose.rotation))
-    stated = "-"
-    if pose.rotation_sigma is not None:
-        stated = f"{np.degrees(np.linalg.norm(pose.rotation_sigma)):.4f} deg"
+    sigma = None if pose.rotation_sigma is None else float(np.linalg.norm(pose.rotation_sigma))
     return [
         ("camera", "position", *_length(pose.centre, pose.centre_sigma)),
-        ("", "rotation", f"{degrees:.4f} deg", stated),
+        ("", "rotation", *_degrees(float(np.linalg.norm(pose.rotation)), sigma)),
     ]
+
+
+def _object_rows(error: ObjectError) -> Iterator[tuple[str, ...]]:
+    yield error.name, "position", *_length(error.position, error.position_sigma)
+    for i, name in enumerate(error.size_names):
+        sigma = None if error.size_sigma is None else error.size_sigma[i]
+        stated = "-" if sigma is None else f"{1e3 * sigma:.2f}"
+        told = name.removeprefix("size_").replace("_", " ")
+        yield "", f"{told} of {1e3 * error.true_sizes[i]:.1f}", _signed(error.sizes[i]), stated
+    if error.corners is not None:
+        yield "", "worst corner", f"{1e3 * error.corners.max():.2f}", "-"
+    if error.rotation is not None:
+        yield "", "rotation", *_degrees(error.rotation, error.rotation_sigma)
+    elif error.kind != "sphere":
+        yield "", "tilt", *_degrees(error.tilt, error.tilt_sigma)
+
+
+def _degrees(angle: float, sigma: float | None) -> tuple[str, str]:
+    stated = "-" if sigma is None else f"{np.degrees(sigma):.4f} deg"
+    return f"{np.degrees(angle):.4f} deg", stated
 
 
 def _length(error: Any, sigma: Any) -> tuple[str, str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from monocell.core import Box, Camera, Cylinder, Intrinsics, Pose
+from monocell.core import Box, Camera, Cone, Cylinder, Intrinsics, Pose, Prism, Sphere, Tube
 from monocell.core.ball.sphere import outline_pixels
 from monocell.core.errors import PictureError
 from monocell.core.picture.overlay import BallOutline, caption, draw_overlay
@@ -101,6 +101,22 @@ def test_captions_hold_sizes_in_millimetres_with_their_sigma():
     assert caption(Cylinder("c", Pose.identity(), radius=0.04, height=0.25)) == (
         "radius 40.0, height 250.0 mm"
     )
+
+
+def test_captions_name_the_sizes_of_every_kind():
+    here, square = Pose.identity(), [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, 0.1]]
+    told = {
+        "radius 40.0 mm": Sphere("s", here, radius=0.04),
+        "radius 40.0, height 250.0 mm": Cone("c", here, radius=0.04, height=0.25),
+        "radius 40.0, top radius 20.0, height 250.0 mm": Cone(
+            "c", here, radius=0.04, top_radius=0.02, height=0.25
+        ),
+        "radius 40.0, inner radius 20.0, height 250.0 mm": Tube(
+            "t", here, radius=0.04, inner_radius=0.02, height=0.25
+        ),
+        "4 corners, height 250.0 mm": Prism("p", here, polygon=square, height=0.25),
+    }
+    assert [caption(thing) for thing in told.values()] == list(told)
 
 
 def test_labels_stay_in_the_picture_and_off_each_other():

@@ -82,6 +82,13 @@ def spoilt(name, **changes):
         (spoilt("shelf", sigma=[1e-3]), "references[1].from: sigma: 1 numbers for 3 points"),
         (spoilt("shelf", sigma=-1.0), "references[1].from: sigma: must not be below zero, got -1"),
         (spoilt("shelf", sigma=[0, 1, 1]), "references[1].from: sigma: zero for some points"),
+        (
+            spoilt("shelf", sigma=1e-300),
+            "references[1].from: sigma: 1e-300 is no error; give 0, or",
+        ),
+        (spoilt("nail", sigma=1e9), "references[1].from: sigma: 1e+09 is no error; give 0, or 1e-"),
+        (spoilt("loft", distance=1e9), "references[1].from: distance: 1e+09 m is farther than any"),
+        (spoilt("board", heights=1e9), "references[1].from: heights: 1e+09 m is farther than any"),
         (spoilt("board", heights=[0.1]), "references[1].from: heights: 1 numbers for 4 pixels"),
         (spoilt("board", heights="low"), "references[1].from.heights: expected a number, got"),
         (spoilt("loft", distance=None), "references[1].from.distance: expected a number, got null"),

@@ -8,7 +8,6 @@ one with a window where it takes another command, such as one with a virtual scr
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import shlex
@@ -101,31 +100,6 @@ def real_blender(request, extension_zip, tmp_path_factory):
 def window_blender(request, extension_zip, tmp_path_factory):
     """A Blender with a window that has the extension."""
     return installed(request.param, extension_zip, tmp_path_factory.mktemp("settings"))
-
-
-def in_window(blender, folder, steps, job):
-    """Run a script of steps in the window; the folder, what it found, and the finished process.
-
-    MONOCELL_SCREENSHOTS names a folder that the screenshots are kept in.
-    """
-    (folder / "job.json").write_text(json.dumps(job | {"out": str(folder)}))
-    script = Path(__file__).with_name(steps)
-    try:
-        run = blender.run(
-            *("--enable-event-simulate", "--window-geometry", 0, 0, 1600, 1000),
-            *("--python", script, "--", folder / "job.json"),
-            timeout=240,
-        )
-    except subprocess.TimeoutExpired as late:
-        pytest.fail(f"the window never finished: {late.stdout}")
-    kept = os.environ.get("MONOCELL_SCREENSHOTS")
-    if kept:
-        place = Path(kept) / folder.name
-        place.mkdir(parents=True, exist_ok=True)
-        for picture in folder.glob("[0-9]_*.png"):
-            shutil.copy(picture, place)
-    assert (folder / "found.json").is_file(), run.stdout + run.stderr
-    return folder, json.loads((folder / "found.json").read_text()), run
 
 
 def installed(command, extension_zip, resources):

@@ -2,16 +2,17 @@
 """From the sample to a calibrated camera in a real window, with work in the background."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT, in_window
 from monocell.core.document.cell_file import read_cell
 from monocell.core.sighting import PointSighting
+from window_run import in_window
 
 pytestmark = [pytest.mark.real_blender, pytest.mark.slow]
 
-SAMPLE = ROOT / "samples" / "01_table"
+SAMPLE = Path(__file__).resolve().parents[2] / "samples" / "01_table"
 THIRD_BALL = 2
 
 

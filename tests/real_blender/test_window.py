@@ -5,8 +5,8 @@ import bench_cell
 import cv2
 import numpy as np
 import pytest
-from conftest import in_window
 from monocell.core.document.cell_file import read_cell
+from window_run import in_window
 
 pytestmark = [pytest.mark.real_blender, pytest.mark.slow]
 

@@ -6,13 +6,14 @@ from __future__ import annotations
 import base64
 import json
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from monocell.core import Box, Cylinder, Pose
-from monocell.core.document.entries import object_entry
+from monocell.core import Box, Composite, Cylinder, Motion, Pose
+from monocell.core.document.entries import composite_entry, object_entry
 from monocell.core.errors import DocumentError
 from monocell.headless.robot.glb import read_environment
 
@@ -186,6 +187,50 @@ def test_a_malformed_file_is_refused_with_its_path_and_what_is_wrong(tmp_path, d
 def test_a_missing_file_is_refused(tmp_path):
     with pytest.raises(DocumentError, match=r"none\.glb: can't be read"):
         read_environment(tmp_path / "none.glb")
+
+
+def composite_node(composite, *children):
+    extras = {"monocell": {"kind": "composite"} | composite_entry(composite)}
+    return {"name": composite.name, "children": list(children), "extras": extras}
+
+
+HUNG = replace(
+    DRUM, motion=Motion("attached", to="crate", joint="hinge", axis=[0, 1, 0], density=700)
+)
+
+
+def test_composites_and_joints_come_back(tmp_path):
+    pair = Composite("pair", ("crate", "drum"), Motion("movable", mass=4))
+    nodes = (node_of(CRATE), node_of(HUNG), composite_node(pair, 0, 1))
+    found = read(tmp_path, glb(document(*nodes, roots=[2])))
+    assert found.warnings == ()
+    assert composite_entry(found.composites[0]) == composite_entry(pair)
+    assert object_entry(found.objects[1]) == object_entry(HUNG)
+
+
+def test_what_hangs_on_a_node_that_is_gone_is_static_and_warned_of(tmp_path):
+    pair = Composite("pair", ("crate", "drum"))
+    found = read(tmp_path, glb(document(node_of(HUNG), composite_node(pair, 0), roots=[1])))
+    assert found.warnings == (
+        "drum: it hangs on crate, which is not there; it is taken as static",
+        "pair: its parts crate are not there",
+    )
+    assert found.objects[0].motion.kind == "static" and found.composites[0].parts == ("drum",)
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ({"parts": "crate"}, r"nodes\[1\]\.extras\.monocell\.parts: expected a list"),
+        ({"colour": 1}, r"nodes\[1\]\.extras\.monocell\.colour: unknown key"),
+        ({"name": "crate"}, r"composites\[0\]\.name: 'crate' is also objects\[0\]'s name"),
+    ],
+)
+def test_a_composite_that_can_t_be_is_refused(tmp_path, entry, message):
+    node = composite_node(Composite("pair", ("crate",)), 0)
+    node["extras"]["monocell"] |= entry
+    with pytest.raises(DocumentError, match=rf"cell\.glb: {message}"):
+        read(tmp_path, glb(document(node_of(CRATE), node, roots=[1])))
 
 
 @pytest.mark.blender

@@ -134,6 +134,26 @@ def test_each_face_shows_its_picture_the_right_way_up(blender, cell):
     assert np.abs(shown[inner].astype(int) - picture[inner]).max() <= 3
 
 
+def test_a_window_of_the_flat_view_is_that_part_of_it(blender, cell):
+    from monocell.core.errors import InvalidValue
+    from monocell.scene.flat_view import flat_view
+
+    picture, inner = expected(cell)
+    shown = eight_bits(flat_view(cell, window=(40, 20, 80, 60), samples=16))
+    part = inner[20:80, 40:120]
+    assert shown.shape == (60, 80, 3)
+    assert np.abs(shown[part].astype(int) - picture[20:80, 40:120][part]).max() <= 3
+    with pytest.raises(InvalidValue, match="not inside the picture"):
+        flat_view(cell, window=(140, 20, 80, 60))
+
+
+def test_an_object_in_a_scene_keeps_its_textures(blender, cell):
+    from monocell.scene.objects import build_object, read_object
+
+    ob = build_object(cell.objects[0], blender.context.scene.collection)
+    assert read_object(ob).appearance.textures == cell.objects[0].appearance.textures
+
+
 def glb_of(cell, path):
     from monocell.scene.gltf import export_gltf
 

@@ -45,8 +45,8 @@ def refuse_line(labels: Sequence[str], i: int, sine: float) -> None:
     name, roles = labels[0].split(": ")[0], [label.split(": ")[-1] for label in labels]
     count = len(labels)
     raise PickError(
-        f"{name}: {roles[i]}, {roles[(i + 1) % count]} and {roles[(i + 2) % count]} lie on one line "
-        f"(a bend of {np.degrees(np.arcsin(sine)):.1f} degrees); pick three corners"
+        f"{name}: {roles[i]}, {roles[(i + 1) % count]} and {roles[(i + 2) % count]} lie on one "
+        f"line (a bend of {np.degrees(np.arcsin(sine)):.1f} degrees); pick three corners"
     )
 
 

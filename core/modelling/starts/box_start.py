@@ -106,8 +106,8 @@ def _from_any(camera: Camera, sketch: Sketch, picked: Picked, held: Held, sigma:
     known = known_parameters(sketch, held)
     if not has_scale(held, known):
         raise PickError(
-            f"{sketch.name}: nothing tells how large it is: a box that stands nowhere needs a known "
-            "size"
+            f"{sketch.name}: nothing tells how large it is: a box that stands nowhere needs a "
+            "known size"
         )
     for role in ("base", "top"):
         refuse_crossing(picked[role])
@@ -139,6 +139,6 @@ def _refuse_negative(sketch: Sketch, trials: Trials) -> None:
         raise PickError(f"{sketch.name}: no box in front of the camera comes near these picks")
     raise PickError(
         f"{sketch.name}: the picks fit best with a {Box.size_names[worst]} of "
-        f"{1e3 * sizes[worst]:.1f} mm; check that top is above base, and the side the normal points "
-        "to"
+        f"{1e3 * sizes[worst]:.1f} mm; check that top is above base, and the side the normal "
+        "points to"
     )

@@ -61,7 +61,7 @@ def descended_corners(
     free[[6 + i for i in known]] = False
     ended = descended(chosen, residuals, free, STEPS)
     ended = ended.chosen((ended.parameters[:, :sizes] > 0).all(axis=1))
-    return distinct(best(ended, residuals, DESCENTS))
+    return distinct(best(ended, residuals, DESCENTS), polygon=held.kind == "prism")
 
 
 def corner_costs(trials: Trials, seen: Seen, held: Held) -> Array:

@@ -38,8 +38,8 @@ def refuse_too_few(sketch: Sketch, picked: Picked, held: Held, known: Mapping[in
     missing = unknown - equations
     what = f"{-(-missing // 2)} more" if sketch.kind in ("box", "prism") else f"{missing} more"
     raise PickError(
-        f"{sketch.name}: {_listed(told)} picks give {equations} equations for the {unknown} numbers "
-        f"of its {', '.join(open_ones)}; pick {what}, or give a size"
+        f"{sketch.name}: {_listed(told)} picks give {equations} equations for the {unknown} "
+        f"numbers of its {', '.join(open_ones)}; pick {what}, or give a size"
     )
 
 

@@ -39,7 +39,7 @@ class Starts:
 
 def known_parameters(sketch: Sketch, held: Held) -> dict[int, float]:
     """The parameters that are not to be solved, by index: typed sizes and those shared."""
-    known = {}
+    known: dict[int, float] = {}
     for relation, other, _ in held.others:
         if relation.kind != "same_size":
             continue

@@ -7,7 +7,7 @@ derivatives: springs that bring a start near to where the exact equations take o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,7 +24,6 @@ from .trials import Trials
 
 # a milliradian (or its length at the object) off its relations costs as much as 30 of a pick
 STIFFNESS = 30.0
-# what `parallel` and `flush` leave of a turn, `perpendicular` and `lies_on` half of it
 ROUND = ("cylinder", "cone", "tube")
 
 
@@ -207,8 +206,3 @@ ROWS: dict[str, Callable[[Held, Grip, Trials], Rows]] = {
     "perpendicular": _perpendicular,
     "centred_on": _centred,
 }
-
-
-def turns_left(held: Held) -> Sequence[str]:
-    """Kinds of all grips, for messages."""
-    return [grip.kind for grip in held.grips]

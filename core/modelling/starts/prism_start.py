@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Mask
 from ...camera import Camera
 from ...errors import PickError
 from ...sketch import Sketch
@@ -45,7 +45,7 @@ def prism_starts(
     plan = corner_plan("prism", picked, turn, sigma_pixels)
     seen = corners_seen(camera, plan, "prism", held.parameters)
     ended = descended_corners(trials, seen, held, known, 1) if len(trials) > 1 else trials
-    possible = np.array([_doubled_area(p) > 0 and p[0] > 0 for p in ended.parameters], dtype=bool)
+    possible = _possible(ended)
     ended = ended.chosen(possible) if possible.any() else trials.chosen(np.array([0]))
     cost = corner_costs(ended, seen, held)
     return Starts(
@@ -65,7 +65,7 @@ def _turned(
         plan = corner_plan("prism", picked, turn, 1.0)
         seen = corners_seen(camera, plan, "prism", held.parameters)
         solved = solved_corners(orientations(held), seen, held, known)
-        possible = np.array([_doubled_area(p) > 0 and p[0] > 0 for p in solved.parameters])
+        possible = _possible(solved)
         if possible.any():
             solved = solved.chosen(possible)
         cost = corner_costs(solved, seen, held)
@@ -73,6 +73,17 @@ def _turned(
         found.append((not possible.any(), float(cost[order[0]]), turn, solved.chosen(order)))
     _, _, turn, trials = min(found, key=lambda f: f[:2])
     return turn, trials
+
+
+def _possible(trials: Trials) -> Mask:
+    """Which guesses (M,) are prisms at all."""
+    return np.array(
+        [
+            p[0] > 0 and _doubled_area(p) > 0 and _crossing(p[1:].reshape(-1, 2)) is None
+            for p in trials.parameters
+        ],
+        dtype=bool,
+    )
 
 
 def _refuse_unseen(sketch: Sketch, picked: Picked) -> None:
@@ -104,8 +115,8 @@ def _refuse_shape(sketch: Sketch, picked: Picked, parameters: Array, turn: float
     if crossing is not None:
         i, j = crossing
         raise PickError(
-            f"{sketch.name}: the side from corner {i} to {(i + 1) % count} crosses that from {j} to "
-            f"{(j + 1) % count}; pick the corners in order round the base"
+            f"{sketch.name}: the side from corner {i} to {(i + 1) % count} crosses that from {j} "
+            f"to {(j + 1) % count}; pick the corners in order round the base"
         )
     if parameters[0] <= 0:
         raise PickError(

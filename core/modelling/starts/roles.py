@@ -7,7 +7,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...arrays import Array
 from ...camera import Camera
 from ...errors import PickError
 from ...shape.anchors import anchors
@@ -130,8 +129,3 @@ def round_seen(camera: Camera, picked: Picked, kind: str, parameters: int) -> Se
 def focal_of(camera: Camera) -> float:
     """Pixels per radian, about."""
     return float(np.sqrt(camera.intrinsics.fx * camera.intrinsics.fy))
-
-
-def stacked(arrays: list[Array]) -> Array:
-    """Rows (N, 3) below each other."""
-    return np.concatenate(arrays) if arrays else np.zeros((0, 3))

@@ -22,9 +22,11 @@ from .standing_round import StandingRays, cones_on, cylinders_on
 from .trials import Trials, best, costs, descended, distinct
 
 # of all guesses so many are descended, in so many steps
-STANDING_DESCENTS, STANDING_STEPS = 10, 8
+STANDING_DESCENTS, STANDING_STEPS = {"cylinder": 8, "tube": 10, "cone": 24}, 10
 DESCENTS, STEPS, LAST_DESCENTS, LAST_STEPS = 24, 6, 6, 20
-WALL = 0.75
+WALL, THINNEST = 0.75, 0.97
+# an end whose axis is nearer than this (a sine) to square to the sight is seen edge-on
+EDGE_ON, TILTS = 0.25, (-0.15, -0.06, 0.06, 0.15)
 # fits that beat all possible ones by this factor, and this many squared pixels, mean a slip
 CLEARLY, NOISE = 4.0, 100.0
 
@@ -60,6 +62,8 @@ def round_starts(
     ended = _real(sketch, ended, misfit)
     cost = costs(ended, misfit)
     near = rivals(ended, cost, sigma_pixels)
+    if standing is None:
+        near = _tilted_too(near, seen, held)
     plan = round_plan(picked, float(seen.facing(near)[0]), sigma_pixels)
     pointed = {"top_radius": 0.0} if known.get(1) == 0.0 and sketch.kind == "cone" else {}
     return Starts(things_of(sketch, near, pointed), plan, _grazing(camera, picked, standing))
@@ -83,7 +87,8 @@ def _standing(
         return _nothing(held)
     guesses = _placed(plane, shapes, on_base)
     free = np.array([False] * 3 + [True] * 3 + [i not in known for i in range(held.parameters)])
-    return descended(best(guesses, misfit, STANDING_DESCENTS), misfit, free, STANDING_STEPS)
+    chosen = best(guesses, misfit, STANDING_DESCENTS[held.kind])
+    return descended(chosen, misfit, free, STANDING_STEPS)
 
 
 def _elsewhere(
@@ -104,13 +109,13 @@ def _elsewhere(
         [True, True, False, True, True, True, *(i not in known for i in range(held.parameters))]
     )
     rough = descended(best(guesses, misfit, DESCENTS), misfit, free, STEPS)
-    rough = distinct(best(_upright(rough), misfit, DESCENTS))
+    rough = distinct(best(_upright(rough, sketch.kind), misfit, DESCENTS))
     return descended(best(rough, misfit, LAST_DESCENTS), misfit, free, LAST_STEPS)
 
 
 def _real(sketch: Sketch, ended: Trials, misfit: Misfit) -> Trials:
     """The different ends that can be, best first. Raises PickError where none can."""
-    ended = distinct(best(_upright(ended), misfit, len(ended)))
+    ended = distinct(best(_upright(ended, sketch.kind), misfit, len(ended)))
     if not len(ended):
         raise PickError(
             f"{sketch.name}: no {sketch.kind} in front of the camera comes near these picks"
@@ -118,8 +123,6 @@ def _real(sketch: Sketch, ended: Trials, misfit: Misfit) -> Trials:
     # a cone may end in a point
     least = np.array([0.0 if n == "top_radius" else 1e-12 for n in sketch_sizes(sketch)])
     possible = (ended.parameters >= least).all(axis=1)
-    if sketch.kind == "tube":
-        possible &= ended.parameters[:, 1] < ended.parameters[:, 0]
     cost = costs(ended, misfit)
     if not possible.any() or cost[possible].min() > CLEARLY * cost[0] + NOISE:
         sizes = ", ".join(
@@ -133,10 +136,25 @@ def _real(sketch: Sketch, ended: Trials, misfit: Misfit) -> Trials:
     return ended.chosen(possible)
 
 
-def _upright(trials: Trials) -> Trials:
-    """A circle of negative radius is the same circle."""
+def _tilted_too(near: Trials, seen: Seen, held: Held) -> Trials:
+    """Where an end is seen edge-on its image folds: the exact fit is begun on both sides, too."""
+    axis, sight = near.rotation[0, :, 2], near.place[0] - seen.origin
+    sight = sight / np.linalg.norm(sight)
+    if abs(float(axis @ sight)) > EDGE_ON or any(g.kind == "parallel" for g in held.grips):
+        return near
+    about = near.rotation[0].T @ np.cross(axis, sight)
+    steps = np.zeros((len(TILTS), 6 + held.parameters))
+    steps[:, :3] = np.outer(TILTS, about)
+    tilted = near.chosen(np.zeros(len(TILTS), dtype=int)).moved(steps)
+    return Trials.joined([near, tilted])
+
+
+def _upright(trials: Trials, kind: str) -> Trials:
+    """A circle of negative radius is the same circle; a tube's wall stays a wall."""
     parameters = trials.parameters.copy()
     parameters[:, 0] = np.abs(parameters[:, 0])
+    if kind == "tube":
+        parameters[:, 1] = np.minimum(np.abs(parameters[:, 1]), THINNEST * parameters[:, 0])
     return Trials(trials.rotation, trials.place, parameters)
 
 

@@ -17,6 +17,8 @@ from .trials import Trials
 HEIGHT = {"cylinder": 1, "cone": 2, "tube": 2}
 # of a cylinder both ends have its one radius
 TOP_RADIUS = {"cylinder": 0, "cone": 1, "tube": 0}
+# radii beyond this share of the distance are doubted, by so many pixels for every such share
+LARGE, GENTLE = 0.3, 3.0
 
 
 def _no_rays() -> Array:
@@ -49,7 +51,7 @@ class Seen:
             return self.focal * self._outline(trials)
         parts = [self._points(trials)] if len(self.points) else []
         if self.kind in HEIGHT:
-            parts += self._round(trials)
+            parts += [*self._round(trials), self._too_large(trials)]
         return self.focal * np.concatenate(parts, axis=1)
 
     def facing(self, trials: Trials) -> Array:
@@ -81,6 +83,13 @@ class Seen:
         if len(self.sides):
             parts.append(self._sides(trials, radius, top))
         return parts
+
+    def _too_large(self, trials: Trials) -> Array:
+        """A gentle push back from radii that only picks which tell nothing would make so large."""
+        away = np.linalg.norm(trials.place - self.origin, axis=1)
+        share = np.abs(trials.parameters[:, 0]) / away / LARGE
+        push: Array = GENTLE / self.focal * np.maximum(share - 1.0, 0.0)[:, None]
+        return push
 
     def _ring(self, trials: Trials, end: Array, radius: Array, rays: Array) -> Array:
         """Angles (M, N) between rays and the circle round an end, across its image."""
@@ -115,7 +124,10 @@ class Seen:
             depth = nearest - lean * away / (flat * level)
             out = away * level + slope * (eye[:, :, 2] + nearest * rays[:, :, 2])
             missed = (out - ((radius + top) / 2)[:, None]) / (depth * np.sqrt(1 + slope**2))
-        return np.where(depth > 0, missed, np.inf)
+        # from inside the endless cone, or from over its point, no side is seen edge-on
+        reach = np.abs((radius + top) / 2 - slope[:, 0] * eye[:, 0, 2])
+        shown = reach < np.hypot(eye[:, 0, 0], eye[:, 0, 1])
+        return np.where((depth > 0) & shown[:, None], missed, np.inf)
 
     def _outline(self, trials: Trials) -> Array:
         sight = trials.place - self.origin

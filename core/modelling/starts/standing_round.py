@@ -16,8 +16,12 @@ from ...arrays import Array
 
 # guesses of an unknown height, in shares of the camera's height above the plane
 HEIGHT_LADDER = (0.03, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.92)
+# a cone's rims differ, so that its height has to be guessed closer
+CONE_HEIGHTS = tuple(0.02 * 1.18**i for i in range(24))
 # guesses of the distance when nothing measures it, in camera heights
 DISTANCE_LADDER = (0.3, 0.6, 1.0, 1.6, 2.5, 4.0, 7.0)
+# how far behind the picks of its rim the middle of a cone may be, in distances of these
+MIDDLE_LADDER = (1.02, 1.05, 1.09, 1.14, 1.22)
 # guesses of one radius of a cone from the other
 TAPERS = (0.0, 0.4, 0.8, 1.3, 2.0)
 DIRECTIONS = 8
@@ -65,7 +69,8 @@ def cones_on(rays: StandingRays, known: Mapping[str, float]) -> Iterator[Array]:
             fars = [known.get("far", far)] if far is not None or "far" in known else None
             for taper in fars if fars is not None else [t * near for t in TAPERS]:
                 yield np.array([x, y, near, taper, height])
-    if len(rays.near) < 3 and len(rays.far) >= 3:
+    # the far circle at a height tells the middle, too
+    if len(rays.far) >= 3:
         for height in _cone_heights(rays, None, known):
             circle = _circle(_pierce(rays, rays.far, height))
             if circle is not None:
@@ -79,6 +84,13 @@ def cones_on(rays: StandingRays, known: Mapping[str, float]) -> Iterator[Array]:
 def _near_circles(rays: StandingRays, known: Mapping[str, float]) -> Iterator[Array]:
     if len(rays.near):
         yield from _bases(rays, rays.near, known.get("near"))
+    if 0 < len(rays.near) < 3:
+        # sides lean, so that they tell no wedge: the middle lies behind the picks, somewhere
+        middle = rays.near.mean(axis=0) - rays.origin[:2]
+        for share in MIDDLE_LADDER:
+            centre = rays.origin[:2] + share * middle
+            away = float(np.median(np.linalg.norm(rays.near - centre, axis=1)))
+            yield np.array([*centre, known.get("near", away)])
     if len(rays.near) < 3 and len(rays.apex):
         # a point that stands upright over the middle, wherever its ray passes
         for height in np.array(HEIGHT_LADDER) * abs(rays.origin[2]):
@@ -99,7 +111,7 @@ def _cone_heights(
         flat = float(ray[:2] @ ray[:2])
         if flat > 1e-12:
             return [float(rays.origin[2] + ray[2] * (ray[:2] @ away) / flat)]
-    return [share * abs(float(rays.origin[2])) for share in HEIGHT_LADDER]
+    return [share * abs(float(rays.origin[2])) for share in CONE_HEIGHTS]
 
 
 def _around_at(rays: StandingRays, circle: Array, middle: Array, height: float) -> float | None:
@@ -205,4 +217,8 @@ def _heights(rays: StandingRays, base: Array) -> list[float]:
     # a ray that passes the cylinder by counts where it is nearest
     root = np.sqrt(np.maximum(b * b - a * c, 0.0))
     levels = [rays.origin[2] + rays.far[:, 2] * (-b + sign * root) / a for sign in (-1.0, 1.0)]
-    return [float(np.median(level)) for level in levels] if len(rays.far) else []
+    if len(rays.far) > 2:
+        # with more picks the middle ones of both will do
+        levels = [np.quantile(level, [0.0, 0.5, 1.0]) for level in levels]
+    # one pick may lie on the near side of the circle and the next on the far side
+    return sorted({round(float(level), 4) for level in np.concatenate(levels)})

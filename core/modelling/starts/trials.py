@@ -12,12 +12,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array, Mask
 from ...rotation import hat
 
 DIFFERENCE = 1e-6
 FIRST_DAMPING = 1e-3
+# indices or a mask
+Rows = NDArray[np.intp] | Mask
 # a descent whose cost falls by less than this share in a step has shown where it ends
 SETTLED_SHARE = 1e-5
 # guesses this near to each other, in shares of their sizes, are one
@@ -35,7 +38,7 @@ class Trials:
     def __len__(self) -> int:
         return len(self.place)
 
-    def chosen(self, rows: Array) -> Trials:
+    def chosen(self, rows: Rows) -> Trials:
         """Some of the guesses, by index or mask."""
         return Trials(self.rotation[rows], self.place[rows], self.parameters[rows])
 
@@ -111,11 +114,15 @@ def descended(trials: Trials, residuals: Residuals, free: Mask, steps: int) -> T
     return trials
 
 
-def distinct(trials: Trials) -> Trials:
-    """The guesses without those that say what an earlier one says."""
+def distinct(trials: Trials, *, polygon: bool = False) -> Trials:
+    """The guesses without those that say what an earlier one says.
+
+    The numbers of a `polygon` change with its turn and place in its own frame: of it, only the axis
+    is compared.
+    """
     kept: list[int] = []
     for i in range(len(trials)):
-        scale = SAME_SHARE * float(np.abs(trials.parameters[i]).max())
+        scale = np.inf if polygon else SAME_SHARE * float(np.abs(trials.parameters[i]).max())
         if not any(
             np.abs(trials.parameters[i] - trials.parameters[j]).max() < scale
             and np.abs(trials.place[i] - trials.place[j]).max() < scale
