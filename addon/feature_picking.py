@@ -62,7 +62,7 @@ def shown_at(cell: Cell, pixel: Array, reach: float, *, axis: bool = False) -> S
 def path_of(cell: Cell, path: str) -> str | None:
     """The name of the reference that is the feature of that path already, None without one."""
     for reference in cell.references:
-        if reference.name == path or getattr(reference.source, "of", None) == path:
+        if path in (reference.name, getattr(reference.source, "of", None)):
             return reference.name
     return None
 

@@ -77,8 +77,7 @@ def _looking_so(cell, dressed):
     """The cell as it is now, its objects with their looks of another."""
     looks = {thing.name: thing.appearance for thing in dressed.objects}
     return cell.with_objects(
-        replace(thing, appearance=looks.get(thing.name, thing.appearance))
-        for thing in cell.objects
+        replace(thing, appearance=looks.get(thing.name, thing.appearance)) for thing in cell.objects
     )
 
 

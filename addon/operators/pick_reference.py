@@ -69,7 +69,7 @@ class PickReference(OnPicture, NeedsPose, bpy.types.Operator):
         from ...core.references.sources import FeatureOf
         from ..editing import with_reference
         from ..feature_picking import path_of
-        from ..modelled import standing_cell
+        from ..modelled import free_name, standing_cell
 
         scene = context.scene
         cell = standing_cell(scene)
@@ -77,8 +77,9 @@ class PickReference(OnPicture, NeedsPose, bpy.types.Operator):
         if name is None:
             kind = cell.reference(self.of)
             kind = "line" if hasattr(kind, "direction") else "plane"
-            made = PendingReference(self.of, kind, FeatureOf(self.of))
-            name = self.of
+            # a reference of the very name of the face would be made from itself
+            name = free_name(cell, self.of.replace(".", " "))
+            made = PendingReference(name, kind, FeatureOf(self.of))
             change_model(scene, lambda cell, sigma: with_reference(cell, made, sigma))
         make_active(scene, name)
         self.report({"INFO"}, f"{name} is the active reference")
