@@ -22,8 +22,8 @@ from ..core.picture.wireframe import finite_parts, wireframe
 from ..core.primitives import Primitive
 from ..core.sighting import PointSighting, SphereSighting
 from .drawing import GREY, HALO, WHITE, YELLOW, Color
-from .plane_grid import PlaneGrid
 from .pick_handles import view_pixels
+from .plane_grid import PlaneGrid
 from .report import Report
 from .settings import DEFAULTS, Settings
 

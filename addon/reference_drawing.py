@@ -12,7 +12,7 @@ import numpy as np
 from ..core.arrays import Array
 from ..core.camera import Camera
 from ..core.picture.wireframe import finite_parts
-from .drawing import WHITE, YELLOW, draw_crosses, draw_lines, draw_words
+from .drawing import ORANGE, WHITE, YELLOW, draw_crosses, draw_lines, draw_words
 from .picture_frame import PictureFrame
 
 LINE_SAMPLES = 24
@@ -24,9 +24,9 @@ def draw_shown(context: Any, frame: PictureFrame, camera: Camera, shown: Any, cu
     words = "nothing to stand on here"
     if shown is not None:
         words = shown.path
-        draw_lines(_in_region(frame, camera, shown.line), YELLOW, 3.0, scale)
+        draw_lines(_in_region(frame, camera, shown.line), ORANGE, 3.5, scale)
     size = (context.region.width, context.region.height)
-    draw_words([(words, YELLOW if shown is not None else WHITE)], *cursor, size, scale)
+    draw_words([(words, ORANGE if shown is not None else WHITE)], *cursor, size, scale)
 
 
 def draw_upright(context: Any, frame: PictureFrame, operator: Any) -> None:
