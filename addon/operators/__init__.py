@@ -7,6 +7,7 @@ from importlib import import_module
 VERBS = (
     "open_sample",
     "open_cell",
+    "open_gltf",
     "open_picture",
     "drop_picture",
     "look_through",
