@@ -6,8 +6,10 @@ from typing import ClassVar
 import bpy
 from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
+from ..cell_scene import looks_through
 from ..model_changes import change_model, name_of
-from ..on_picture import OnPicture
+from ..on_picture import OnPicture, window_region
+from ..picture_frame import picture_frame
 from ..polls import NeedsPose
 from ..refusals import refuses, refuses_to_start
 
@@ -44,10 +46,13 @@ class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
         sigma = context.scene.monocell_inputs.pick_sigma_pixels
         self.name, self._handles = thing.name, Handles.of(cell, thing, sigma)
         self._held = None
-        begun = self.begin(context, event)
-        if begun == {"RUNNING_MODAL"} and event.type == "LEFTMOUSE" and event.value == "PRESS":
-            self.handle(context, context.area, event)
-        return begun
+        pressed = event.type == "LEFTMOUSE" and event.value == "PRESS"
+        if pressed:
+            self._held = self._pressed_on(context, event)
+            if self._held is None:
+                # a tool's click beside all picks chooses another object, as ever
+                return {"CANCELLED", "PASS_THROUGH"}
+        return self.begin(context, event)
 
     def handle(self, context, area, event):
         """Press takes the nearest pick, release solves."""
@@ -98,7 +103,23 @@ class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
             self.report({"WARNING"}, warning)
         return {"FINISHED"}
 
+    def _pressed_on(self, context, event):
+        """The handle under a press that starts it all."""
+        space = context.space_data
+        if space is None or space.type != "VIEW_3D" or not looks_through(context.scene, space):
+            return None
+        region = window_region(context.area)
+        intrinsics = self._handles.cell.camera.intrinsics
+        frame = picture_frame(context.scene, region, space, intrinsics)
+        x, y = event.mouse_x - region.x + 0.5, event.mouse_y - region.y + 0.5
+        pixel = frame.picture_pixel(x, y)
+        return None if pixel is None else self._handles.nearest(pixel, reach_of(context, frame))
+
     def _reach(self, context, area):
-        frame = self.frame(context, area)
-        across = (frame.right - frame.left) / frame.intrinsics.width
-        return REACH_POINTS * context.preferences.system.ui_scale / across
+        return reach_of(context, self.frame(context, area))
+
+
+def reach_of(context, frame):
+    """How near a press has to be to take a pick, in pixels of the picture."""
+    across = (frame.right - frame.left) / frame.intrinsics.width
+    return REACH_POINTS * context.preferences.system.ui_scale / across

@@ -69,9 +69,12 @@ def steps():
     yield from shot("2_wedge")
     yield from click(job["wedge"][3], ctrl=True)
 
-    in_view(bpy.ops.monocell.add_box, "INVOKE_DEFAULT")
+    # the tool's own first click is the first pick
+    in_view(bpy.ops.wm.tool_set_by_id, name="monocell.tool_add_box")
     yield PAUSE
-    yield from clicked(job["crate"], ctrl=True)
+    yield from click(job["crate"][0])
+    in_view(bpy.ops.wm.tool_set_by_id, name="builtin.select_box")
+    yield from clicked(job["crate"][1:], ctrl=True)
     for digit in ("ONE", "TWO", "THREE", "BACK_SPACE", "ZERO"):
         yield from key(digit, job["crate"][2])
     yield from shot("3_typed")
@@ -126,6 +129,8 @@ def steps():
     active("box")
     save("coloured")
     # Ctrl-click on a panel's head closes the others
+    view()[0].event_simulate(type="MOUSEMOVE", value="NOTHING", x=1150, y=364)
+    yield PAUSE
     press("LEFTMOUSE", 1150, 364, ctrl=True)
     yield from settle()
     bpy.context.scene.monocell_object.size_0 = 0.2
