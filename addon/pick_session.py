@@ -206,6 +206,10 @@ class PickSession:
         first = after.plan.stages[0]
         if after._count(first) < len(first.prompts):
             return Preview(after._chain(), place, "")
+        stage = after.stage
+        if stage is not None and (stage == first or not after._count(stage)):
+            # too little is there yet for more than the first stage
+            return after._flat(place, "")
         try:
             thing = after.solved()
             return Preview(after._lines(thing), place or caption(thing), "")
