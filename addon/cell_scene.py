@@ -14,7 +14,7 @@ import numpy as np
 from ..core.arrays import Array
 from ..core.camera import Camera
 from ..core.cell import Cell
-from ..core.errors import InvalidValue
+from ..core.errors import InvalidValue, PictureError
 from ..core.pose import Pose
 from .document import bare_cell, show_objects, write_scene
 
@@ -42,7 +42,8 @@ def open_scene(context: Any, cell: Cell, title: str) -> Any:
         put_camera(scene)
         if picture is not None:
             show_picture(scene, name, picture)
-        show_objects(scene, cell)
+        for missing in show_objects(scene, cell):
+            raise PictureError(missing)
     context.window.scene = scene
     return scene
 
