@@ -6,7 +6,7 @@ def register():
     """Put all of it in place. OpenCV and the graphics module wait until they are needed."""
     import bpy
 
-    from . import keymap, menus, overlay, properties
+    from . import keymap, menus, overlay, properties, tools
 
     properties.register()
     for cls in _classes():
@@ -14,14 +14,16 @@ def register():
     menus.register()
     overlay.register()
     keymap.register()
+    tools.register()
 
 
 def unregister():
     """Take it away, in reverse."""
     import bpy
 
-    from . import keymap, menus, overlay, properties
+    from . import keymap, menus, overlay, properties, tools
 
+    tools.unregister()
     keymap.unregister()
     overlay.unregister()
     menus.unregister()

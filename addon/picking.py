@@ -30,7 +30,12 @@ class PicksOnPicture(OnPicture):
         self._session = PickSession(self.plan, cell.camera, reference, sigma)
         self._shown = None
         started = self.begin(context, event)
-        context.window_manager.monocell_work.picking = "RUNNING_MODAL" in started
+        if "RUNNING_MODAL" not in started:
+            return started
+        context.window_manager.monocell_work.picking = True
+        # the click that a tool began with is the first pick
+        if event.type == "LEFTMOUSE" and event.value == "PRESS":
+            return self.handle(context, context.area, event) or started
         return started
 
     def end(self, context):
