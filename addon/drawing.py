@@ -10,9 +10,11 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core.arrays import Array
 
+Floats = NDArray[np.float32]
 Color = tuple[float, float, float, float]
 HALO: Color = (0.05, 0.05, 0.06, 0.6)
 # Okabe and Ito's colours, which colour-blind eyes tell apart
@@ -32,15 +34,22 @@ class LineBatch:
     """Polylines (N, 2) of one colour and width, kept on the graphics card between redraws."""
 
     def __init__(self, lines: Iterable[Array], color: Color, width: float) -> None:
+        self._keep(ends_of(lines), color, width)
+
+    @classmethod
+    def of_ends(cls, ends: Floats, color: Color, width: float) -> LineBatch:
+        """From what `ends_of` gave, joined."""
+        batch = cls.__new__(cls)
+        batch._keep(ends, color, width)
+        return batch
+
+    def _keep(self, ends: Floats, color: Color, width: float) -> None:
         import gpu
         from gpu_extras.batch import batch_for_shader
 
         self._shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
         self._color, self._width = color, width
-        parts = [np.stack([line[:-1], line[1:]], axis=1).reshape(-1, 2) for line in lines]
-        ends = np.concatenate(parts) if parts else np.zeros((0, 2))
-        flat = np.column_stack([ends, np.zeros(len(ends))]).astype(np.float32)
-        self._batch = batch_for_shader(self._shader, "LINES", {"pos": flat}) if len(ends) else None
+        self._batch = batch_for_shader(self._shader, "LINES", {"pos": ends}) if len(ends) else None
 
     def draw(self, scale: float) -> None:
         """Draw under the current matrices; `scale` is Blender's interface scale."""
@@ -55,6 +64,22 @@ class LineBatch:
         self._shader.uniform_float("color", self._color)
         self._batch.draw(self._shader)
         gpu.state.blend_set("NONE")
+
+
+def ends_of(lines: Iterable[Array]) -> Floats:
+    """Both ends (2 M, 3) of every straight part of polylines (N, 2), as a graphics card wants."""
+    kept = [line for line in lines if len(line) > 1]
+    if not kept:
+        return np.zeros((0, 3), np.float32)
+    lengths = np.array([len(line) for line in kept])
+    joined = np.concatenate(kept)
+    # every point begins a part but the last of its line
+    begins = np.ones(len(joined), dtype=bool)
+    begins[np.cumsum(lengths) - 1] = False
+    first = np.flatnonzero(begins)
+    ends = np.zeros((2 * len(first), 3), np.float32)
+    ends[0::2, :2], ends[1::2, :2] = joined[first], joined[first + 1]
+    return ends
 
 
 def draw_lines(lines: Sequence[Array], color: Color, width: float, scale: float) -> None:

@@ -22,8 +22,9 @@ class Overlay:
     def __init__(self) -> None:
         self._balls: tuple[Any, list[Any], list[Any]] = ((), [], [])
         self._grid: tuple[Any, list[Any]] = ((), [])
-        self._strokes: dict[str, tuple[Any, list[Any]]] = {}
-        self._objects: tuple[Any, list[Any]] = ((), [])
+        self._common: tuple[Any, ...] = ()
+        self._lines: dict[str, tuple[Any, _Held]] = {}
+        self._objects: list[Any] | None = None
 
     def draw(self) -> None:
         """Blender's call, once a redraw of any 3D viewport."""
@@ -98,24 +99,23 @@ class Overlay:
 
         if bare_cell(scene).camera.camera_from_world is None:
             return []
-        active, text = context.view_layer.objects.active, scene.monocell_cell.text
-        before, self._strokes = self._strokes, {}
+        active = context.view_layer.objects.active
+        common = (scene.monocell_cell.text, look)
+        # what was drawn for another camera or in other colours is of no use
+        before = self._lines if self._common == common else {}
+        self._lines, self._common = {}, common
         for ob in scene.objects:
             if not is_modelled(ob) or not ob.visible_get():
                 continue
-            key = _object_key(ob, ob == active and ob.select_get(), text, look)
+            key = _object_key(ob, ob == active and ob.select_get())
             held = before.get(ob.name)
             if held is None or held[0] != key:
-                held = key, list(_strokes_of(scene, ob, key[0], look))
-            self._strokes[ob.name] = held
-        keys = tuple((name, key) for name, (key, _) in self._strokes.items())
-        if self._objects[0] != keys:
-            from .overlay_lines import merged
-
-            # of a hundred objects one was moved: their lines are kept, and sent as one
-            strokes = [stroke for _, held in self._strokes.values() for stroke in held]
-            self._objects = keys, _batches(merged(strokes))
-        return self._objects[1]
+                held = key, _lines_of(scene, ob, key[0], look)
+            self._lines[ob.name] = held
+        # of a hundred objects one was moved: the lines of the others are kept, and sent as one
+        if before != self._lines or self._objects is None:
+            self._objects = _joined(lines for _, lines in self._lines.values())
+        return self._objects
 
 
 def register() -> None:
@@ -131,23 +131,37 @@ def unregister() -> None:
     del bpy.types.SpaceView3D.monocell_overlay
 
 
-def _object_key(ob: Any, active: bool, text: str, look: Settings) -> tuple[Any, ...]:
+def _object_key(ob: Any, active: bool) -> tuple[Any, ...]:
     """What an object's lines depend on; in edit mode its dimensions follow the edit."""
-    place = tuple(tuple(row) for row in ob.matrix_world)
-    return (active, text, look, place, tuple(ob.dimensions))
+    return (active, ob.matrix_world.copy(), tuple(ob.dimensions))
 
 
-def _strokes_of(scene: Any, ob: Any, active: bool, look: Settings) -> Any:
+class _Held:
+    """An object's lines; two are equal when they are the same ones."""
+
+    def __init__(self, looks: Any) -> None:
+        self.looks = looks
+
+
+def _lines_of(scene: Any, ob: Any, active: bool, look: Settings) -> _Held:
     from ..core.errors import MonocellError
     from ..scene.objects import read_object
-    from .overlay_lines import object_strokes
+    from .overlay_lines import looks_of, object_strokes
 
     try:
         thing = read_object(ob)
     except MonocellError:
         # an object edited out of its kind has no wire-frame; the panel says so
-        return ()
-    return object_strokes(thing, bare_cell(scene).camera, active, look)
+        return _Held({})
+    return _Held(looks_of(object_strokes(thing, bare_cell(scene).camera, active, look)))
+
+
+def _joined(held: Any) -> list[Any]:
+    from .drawing import LineBatch
+    from .overlay_lines import joined
+
+    looks = joined(one.looks for one in held)
+    return [LineBatch.of_ends(ends, color, width) for (color, width), ends in looks.items()]
 
 
 def _batches(strokes: Any) -> list[Any]:

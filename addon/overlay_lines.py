@@ -21,7 +21,7 @@ from ..core.cell import Cell
 from ..core.picture.wireframe import finite_parts, wireframe
 from ..core.primitives import Primitive
 from ..core.sighting import PointSighting, SphereSighting
-from .drawing import GREY, HALO, WHITE, YELLOW, Color
+from .drawing import GREY, HALO, WHITE, YELLOW, Color, Floats, ends_of
 from .pick_handles import view_pixels
 from .plane_grid import PlaneGrid
 from .report import Report
@@ -37,6 +37,9 @@ CROSS_PIXELS = 7.0
 # a pick's ring, pixels about it
 RING = 3.5 * np.stack([np.cos(np.linspace(0, 6.3, 17)), np.sin(np.linspace(0, 6.3, 17))], axis=1)
 ELSEWHERE = 0.55
+
+Look = tuple[Color, float]
+Looks = dict[Look, Floats]
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,13 +158,22 @@ def object_strokes(
         yield from haloed(rings, WHITE, 1.2)
 
 
-def merged(strokes: Iterable[Stroke]) -> Iterator[Stroke]:
-    """The same lines in as few strokes as there are looks, halos first."""
-    looks: dict[tuple[Color, float], list[Array]] = {}
+def looks_of(strokes: Iterable[Stroke]) -> Looks:
+    """The ends of all lines of each colour and width."""
+    looks: dict[Look, list[Array]] = {}
     for stroke in strokes:
         looks.setdefault((stroke.color, stroke.width), []).extend(stroke.lines)
-    for (color, width), lines in sorted(looks.items(), key=lambda look: look[0][0] != HALO):
-        yield Stroke(tuple(lines), color, width)
+    return {look: ends_of(lines) for look, lines in looks.items()}
+
+
+def joined(many: Iterable[Looks]) -> Looks:
+    """The same of many objects, in as few as there are looks, halos first."""
+    looks: dict[Look, list[Floats]] = {}
+    for one in many:
+        for look, ends in one.items():
+            looks.setdefault(look, []).append(ends)
+    ordered = sorted(looks.items(), key=lambda item: item[0][0] != HALO)
+    return {look: np.concatenate(ends) for look, ends in ordered}
 
 
 def haloed(lines: tuple[Array, ...], color: Color, width: float) -> tuple[Stroke, Stroke]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from .cell_scene import camera_stands
 from .document import bare_cell, has_cell, stored_report
+from .lengths import lengths
 from .lists import SightingList
 from .operators.add_pictures import AddPictures
 from .operators.add_point import AddPoint
@@ -23,6 +24,7 @@ from .operators.read_sightings import ReadSightings
 from .operators.remove_sighting import RemoveSighting
 from .operators.show_picture import ShowPicture
 from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
+from .preferences import settings
 from .steps import FEWEST_SIGHTINGS, camera_step
 
 VERDICT_ICONS = {"good": "CHECKMARK", "weak": "ERROR", "failed": "CANCEL"}
@@ -167,7 +169,7 @@ def _draw_pose(layout, context, cell):
             alert.alert = True
             paragraph(alert, context, "Blender's camera was changed; models miss the picture.")
             layout.operator(LookThrough.bl_idname, text="Put It Back", icon="VIEW_CAMERA")
-        numbers(layout, _pose_rows(camera, report))
+        numbers(layout, _pose_rows(camera, report, settings(context).unit))
     if report is None:
         return
     for warning in report.warnings:
@@ -177,12 +179,11 @@ def _draw_pose(layout, context, cell):
         numbers(layout, _advice_rows(report))
 
 
-def _pose_rows(camera, report):
+def _pose_rows(camera, report, unit):
     x, y, z = camera.centre_world
     yield "Position", f"{x:.4f}  {y:.4f}  {z:.4f} m"
     if camera.covariance is not None:
-        x, y, z = 1e3 * camera.centre_sigma()
-        yield "± 1 sigma", f"{x:.2f}  {y:.2f}  {z:.2f} mm"
+        yield "± 1 sigma", lengths(camera.centre_sigma(), unit, finer=1)
         x, y, z = np.degrees(camera.rotation_sigma())
         yield "Turned ±", f"{x:.3f}  {y:.3f}  {z:.3f}°"
     if report is not None and report.verdict:

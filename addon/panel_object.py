@@ -4,6 +4,7 @@
 import bpy
 
 from .document import bare_cell, has_cell
+from .lengths import length, lengths
 from .model_changes import active_object
 from .operators.add_relation import KINDS, AddRelation
 from .operators.move_pick import MovePick
@@ -13,6 +14,7 @@ from .operators.stand_on import StandOn
 from .operators.take_colors import TakeColors
 from .operators.take_textures import TakeTextures
 from .panel_parts import CellPanel, numbers, paragraph
+from .preferences import settings
 
 SAID = {name: label for name, label, _ in KINDS}
 
@@ -47,7 +49,7 @@ class ObjectPanel(CellPanel, bpy.types.Panel):
             paragraph(layout, context, str(error), "ERROR")
             return
         draw_sizes(layout, context, thing)
-        numbers(layout, place_rows(thing))
+        numbers(layout, place_rows(thing, settings(context).unit))
         draw_holding(layout, thing)
         row = layout.row(align=True)
         row.operator(SetMotion.bl_idname, text=f"Motion: {thing.motion.kind}", icon="CON_PIVOT")
@@ -61,14 +63,14 @@ class ObjectPanel(CellPanel, bpy.types.Panel):
 def draw_sizes(layout, context, thing):
     """A field, 1 sigma and a lock for each size."""
     fields = context.scene.monocell_object
-    sigmas = thing.size_sigma()
+    sigmas, unit = thing.size_sigma(), settings(context).unit
     column = layout.column(align=True)
     for i, name in enumerate(thing.size_names):
         row = column.row(align=True)
         split = row.split(factor=0.66, align=True)
         split.prop(fields, f"size_{i}", text=name.replace("_", " ").capitalize())
         held = name in thing.known
-        error = "" if sigmas is None or held else f"± {1e3 * sigmas[i]:.1f} mm"
+        error = "" if sigmas is None or held else f"± {length(float(sigmas[i]), unit)}"
         split.label(text="typed" if held else error)
         icon = "LOCKED" if held else "UNLOCKED"
         row.prop(fields, f"known_{i}", text="", icon=icon, emboss=False)
@@ -80,14 +82,14 @@ def draw_sizes(layout, context, thing):
         paragraph(layout, context, fields.warning, "INFO")
 
 
-def place_rows(thing):
+def place_rows(thing, unit):
     """Corners, centre and its error."""
     if thing.kind == "prism":
         yield "Corners", str(len(thing.polygon))
-    yield "Centre", ", ".join(f"{1e3 * x:.1f}" for x in thing.world_from_object.translation) + " mm"
+    yield "Centre", lengths(thing.world_from_object.translation, unit)
     place = thing.position_sigma()
     if place is not None:
-        yield "± 1 sigma", ", ".join(f"{1e3 * x:.1f}" for x in place) + " mm"
+        yield "± 1 sigma", lengths(place, unit)
 
 
 def draw_holding(layout, thing):

@@ -60,7 +60,7 @@ def camera() -> Camera:
 def other_side() -> Camera:
     """Another place to look from, on the other side of the arm, with a perfect lens."""
     intrinsics = Intrinsics(960, 720, 900.0, 900.0, 479.5, 359.5)
-    return Camera(intrinsics, Pose.looking_at([1.9, 1.9, 1.35], [0.2, 0.0, 0.42], UP))
+    return Camera(intrinsics, Pose.looking_at([1.3, 1.95, 1.6], [0.25, 0.0, 0.42], UP))
 
 
 def work_cell(things: tuple[Primitive, ...]) -> WorkCell:
@@ -146,7 +146,7 @@ def _arm() -> list[Primitive]:
 
 
 def _balls() -> list[Primitive]:
-    ball = Sphere("ball", Pose(np.eye(3), np.array([1.05, 0.30, 0.62])), radius=0.06)
+    ball = Sphere("ball", Pose(np.eye(3), np.array([0.95, 0.62, 0.86])), radius=0.06)
     small = Sphere("small ball", Pose(np.eye(3), np.array([0.30, -0.75, 0.72])), radius=0.045)
     return [_coloured(ball, (0.75, 0.70, 0.62)), _coloured(small, (0.60, 0.05, 0.10))]
 

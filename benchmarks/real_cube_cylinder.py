@@ -12,7 +12,9 @@ ends above the picture, so its height is given.
 Every frame is solved with two cameras. `as given` takes the pose that comes with the pictures: it
 lies 1 to 4 px beside the cube's corners and states no error, so that error is not in the 1 sigma.
 `from the cube` finds the pose from the corners of the cube of the first frame, as points that are
-known: that cube is then no test, all else is. The lens is given without distortion.
+known: that cube is then no test, all else is. Last all other frames are solved together with that
+camera's error, every cube of the same size as the others and every cylinder too. The lens is given
+without distortion.
 """
 
 from __future__ import annotations
@@ -31,6 +33,7 @@ from monocell.core.calibration.calibrate import calibrate_outlines
 from monocell.core.errors import MonocellError
 from monocell.core.modelling.solve import Modelled, model_cell
 from monocell.core.picture.overlay import draw_overlay
+from monocell.core.relation import Relation
 from monocell.core.sighting import PointSighting
 from monocell.headless.pictures import write_picture
 from monocell.headless.told import table, warn
@@ -64,6 +67,36 @@ def main() -> None:
         _tell_spread([pair[1] for pair in solved.values()], [CYLINDER_RADIUS_MM])
         if arguments.out:
             _write_overlays(pictures, camera, solved, arguments.out / name.replace(" ", "_"))
+    print("\ncamera from the cube, all frames but its own together, of one size each")
+    _tell_together(_from_cube(given))
+
+
+def _tell_together(camera: Camera) -> None:
+    """One problem: the camera's error and sizes are shared, places are each frame's own."""
+    frames = [frame for frame in CUBE if frame != 0]
+    cell = Cell(camera, references=(TABLE,), sketches=tuple(_of_one_size(frames)))
+    _, modelled = model_cell(cell, PICK_SIGMA_PIXELS, joint=True)
+    cube, cylinder = modelled[0], modelled[len(frames)]
+    *edges, _ = _told(cube, 3)
+    radius, _ = _told(cylinder, 1)
+    every = [result.residual_pixels for result in modelled]
+    rms = float(np.sqrt(np.mean(np.concatenate(every) ** 2)))
+    print(f"edges {', '.join(edges)}; radius {radius} mm; {rms:.2f} px rms")
+    warn([warning for result in modelled for warning in result.warnings])
+
+
+def _of_one_size(frames: Sequence[int]) -> list[Sketch]:
+    sketches = []
+    for kind, name, picks, known in (
+        ("box", "cube", CUBE, {}),
+        ("cylinder", "cylinder", CYLINDER, {"height": CYLINDER_HEIGHT}),
+    ):
+        for frame in frames:
+            held = () if frame == frames[0] else (Relation("same_size", f"{name} {frames[0]}"),)
+            sketches.append(
+                Sketch(f"{name} {frame}", kind, "table", picks[frame], known, relations=held)
+            )
+    return sketches
 
 
 def _solved(camera: Camera, frame: int) -> tuple[Modelled | None, Modelled | None]:

@@ -24,7 +24,8 @@ HEADER = ("things", "refused", "warned", "size %", "90 %", "place mm", "90 %", "
 
 @dataclass(frozen=True, eq=False)
 class ThingScore:
-    """Of one thing: `size_errors` as shares of the true sizes, `place` of its centre in metres.
+    """Of one thing: `place` is the error of its centre in metres, `size_errors` are shares of the
+    true sizes, of those that were solved.
 
     `inside` tells whether place and sizes lie in the stated ellipsoid of 95 %. `refusal` is why
     there is no such thing, else empty.
@@ -48,10 +49,11 @@ def score(
 ) -> ThingScore:
     """Estimate minus truth; a box may have its x and y exchanged."""
     error = object_error(truth, estimate)
+    solved = [name not in estimate.known for name in truth.size_names]
     return ThingScore(
         cell,
         truth.name,
-        np.abs(error.sizes) / truth.sizes,
+        (np.abs(error.sizes) / truth.sizes)[solved],
         float(np.linalg.norm(error.position)),
         _inside(truth, estimate, np.concatenate([error.position, error.sizes])),
         warnings,
@@ -68,7 +70,7 @@ def figures(scores: Sequence[ThingScore]) -> tuple[str, ...]:
     places = 1e3 * np.array([s.place for s in solved])
     return (
         *counts,
-        *(f"{np.quantile(sizes, q):.2f}" for q in (0.5, 0.9)),
+        *(f"{np.quantile(sizes, q):.2f}" if len(sizes) else "-" for q in (0.5, 0.9)),
         *(f"{np.quantile(places, q):.2f}" for q in (0.5, 0.9)),
         f"{100 * np.mean([s.inside for s in solved]):.1f}",
     )

@@ -150,10 +150,18 @@ def _known(fields: Fields) -> dict[str, float]:
     kind = KINDS[fields.text("kind")]
     known = keyed(fields.raw("known"), fields.path("known"), (), kind.size_names)
     return {
-        name: positive(known.number(name), known.path(name))
-        for name in kind.size_names
-        if known.has(name)
+        name: _known_size(kind.kind, name, known) for name in kind.size_names if known.has(name)
     }
+
+
+def _known_size(kind: str, name: str, known: Fields) -> float:
+    value = known.number(name)
+    # a cone that is known to end in a point
+    return (
+        value
+        if (kind, name, value) == ("cone", "top_radius", 0)
+        else positive(value, known.path(name))
+    )
 
 
 def _picks(fields: Fields) -> Picks:

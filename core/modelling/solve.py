@@ -16,6 +16,7 @@ from ..references.resolve import resolve_references
 from ..references.sources import FeatureOf
 from ..sketch import Sketch
 from .candidates import Chosen, choose
+from .following import followed
 from .holding import References, holds_of, relations_of
 from .model_fit import ModelFit, fit_model
 from .modelled import Modelled, modelled
@@ -72,8 +73,8 @@ def model(cell: Cell, pick_sigma_pixels: float = 1.0, *, joint: bool = False) ->
     errors of camera and references, so that what is known of one improves the others. The cell
     keeps its calibrated camera: otherwise a second run would count the same picks twice.
 
-    The objects come first, in their order, then the solved sketches. Objects without picks stay
-    untouched.
+    The objects come first, in their order, then the solved sketches. Objects without picks stay as
+    they are, but for those that other objects hold: they follow.
 
     Raises what `solve_sketch` raises; the cell is then as it was.
     """
@@ -140,6 +141,7 @@ class _Work:
             self._take(fit)
             fit = self._fit(joint=True)
         self._take(fit)
+        self._follow()
         objects = {thing.name: thing for thing in self.cell.objects}
         ordered = tuple(objects[name] for name in self.order)
         results = [
@@ -153,6 +155,14 @@ class _Work:
         ]
         cell = replace(self.cell, objects=ordered, sketches=())
         return Modelling(cell, tuple(results), (*self.warnings, *_pulled(fit)))
+
+    def _follow(self) -> None:
+        """What nobody picked and an object holds goes where that has gone."""
+        if len(self.chosen) == len(self.cell.objects):
+            return
+        camera = self.cell.standing_camera()
+        things = followed(camera, self.references(), self.cell.objects, list(self.chosen))
+        self.cell = replace(self.cell, objects=things)
 
     def references(self) -> dict[str, Reference]:
         """What stands, by name; a face of an object is taken from the object itself."""

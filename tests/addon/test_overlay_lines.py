@@ -5,8 +5,10 @@ from types import SimpleNamespace
 import bench_cell
 import numpy as np
 import pytest
-from monocell.addon.drawing import GREEN, GREY, ORANGE, RED, WHITE, YELLOW
+from monocell.addon.drawing import GREEN, GREY, HALO, ORANGE, RED, WHITE, YELLOW, ends_of
 from monocell.addon.overlay_lines import (
+    joined,
+    looks_of,
     object_strokes,
     sighting_color,
     sighting_labels,
@@ -138,3 +140,24 @@ def test_hidden_edges_are_fainter(active):
     hidden, _, seen = object_strokes(bench_cell.BOX, bench_cell.CAMERA, active)
     assert len(hidden.lines) == 3
     assert hidden.color[3] < seen.color[3] and hidden.width < seen.width
+
+
+def test_lines_become_the_ends_of_their_straight_parts():
+    lines = [
+        np.array([[0.0, 0], [1, 0], [1, 1]]),
+        np.array([[5.0, 5]]),
+        np.array([[2.0, 2], [3, 3]]),
+    ]
+    assert ends_of(lines)[:, :2].tolist() == [[0, 0], [1, 0], [1, 0], [1, 1], [2, 2], [3, 3]]
+    assert ends_of([]).shape == (0, 3)
+
+
+def test_objects_are_joined_by_their_looks_with_halos_below():
+    many = [
+        looks_of(object_strokes(thing, bench_cell.CAMERA, False))
+        for thing in (bench_cell.BOX, bench_cell.DRUM)
+    ]
+    together = joined(many)
+    assert len(together) == 3
+    assert next(iter(together))[0] == HALO
+    assert sum(map(len, together.values())) == sum(len(e) for one in many for e in one.values())

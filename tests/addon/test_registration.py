@@ -19,7 +19,10 @@ for _ in range(2):
     monocell.unregister()
     after = set(dir(bpy.types)) | set(dir(bpy.types.Scene)) | set(dir(bpy.types.SpaceView3D))
     assert after == names, after ^ names
-    assert not hasattr(bpy.types.WindowManager, "monocell_command")
+    left = {name for name in dir(bpy.types.WindowManager) if "monocell" in name}
+    assert not left, left
+    handlers = [c.bl_idname for c in bpy.types.FileHandler.__subclasses__() if c.is_registered]
+    assert not [name for name in handlers if name.startswith("MONOCELL")], handlers
     monocell.register()
 """
 

@@ -203,3 +203,21 @@ def test_objects_that_hold_each_other_are_solved_together():
     solved = model(Cell(cam, references=(FLOOR,), sketches=sketches)).cell.objects
     for thing, twin in zip(solved, twins, strict=True):
         np.testing.assert_allclose(deviation(thing, twin), 0, atol=1e-8)
+
+
+def test_what_nobody_picked_follows_what_holds_it():
+    cam = camera()
+    cell, _, _ = stacked_cell(cam)
+    lamp = Box("lamp", Pose(np.eye(3), [0.1, 0.05, 0.5]), on="block.top", size=[0.03, 0.03, 0.1])
+    typed = Box("typed", Pose(np.eye(3), [0.3, 0, 0.3]), on="floor", size=[0.1, 0.1, 0.1])
+    solved = model(replace(cell, objects=(lamp, typed))).cell
+    now = {thing.name: thing for thing in solved.objects}
+    foot = now["lamp"].world_from_object.translation[2] - 0.05
+    block = now["block"]
+    assert foot == pytest.approx(block.world_from_object.translation[2] + block.size[2] / 2)
+    # it moves no farther than it has to, and keeps its size
+    np.testing.assert_allclose(now["lamp"].world_from_object.translation[:2], [0.1, 0.05])
+    np.testing.assert_allclose(now["lamp"].size, [0.03, 0.03, 0.1])
+    # what a person put above the floor stays where it was put
+    assert now["typed"] is typed
+    assert {thing.name: thing for thing in model(solved).cell.objects}["lamp"] is now["lamp"]

@@ -14,6 +14,7 @@ from ...ball.sphere import sphere_from_rays
 from ...camera import Camera
 from ...errors import PickError, SphereNotFound
 from ...sketch import Sketch
+from .counts import refuse_too_few
 from .found import Starts, known_parameters, rivals, things_of
 from .held import Grip, Held
 from .roles import Picked, round_plan, round_seen
@@ -40,6 +41,7 @@ def ball_starts(
             f"{sketch.name}: nothing tells how large it is: a ball that floats needs its radius, "
             "or say what it lies on or touches"
         )
+    refuse_too_few(sketch, picked, held, known)
     guesses = _guesses(sketch, seen, held, known.get(0))
 
     def residuals(trials: Trials) -> Array:

@@ -32,7 +32,7 @@ def turn_of(corners: Array, labels: Sequence[str]) -> float:
     bends = [_bend(corners, i) for i in (range(count) if count == 4 else [0])]
     for i, sine in enumerate(bends):
         if abs(sine) < COLLINEAR:
-            refuse_line(labels, i, sine)
+            _refuse_line(labels, i, sine)
     if min(bends) < 0 < max(bends):
         raise PickError(
             f"{labels[0].split(':')[0]}: the base corners cross; pick them in order round the base"
@@ -40,7 +40,7 @@ def turn_of(corners: Array, labels: Sequence[str]) -> float:
     return float(np.sign(bends[0]))
 
 
-def refuse_line(labels: Sequence[str], i: int, sine: float) -> None:
+def _refuse_line(labels: Sequence[str], i: int, sine: float) -> None:
     """Raises PickError for corner i and the two after it."""
     name, roles = labels[0].split(": ")[0], [label.split(": ")[-1] for label in labels]
     count = len(labels)

@@ -15,6 +15,7 @@ from ..picks import RolePicks
 from ..reverse_mapping import grazing_warnings, points_on_plane
 from .base_corners import refuse_crossing, top_heights, turn_of
 from .corner_solids import corner_costs, descended_corners, has_scale, solved_corners
+from .counts import refuse_too_few
 from .found import Starts, known_parameters, plane_of, rivals, things_of
 from .held import Grip, Held
 from .orientations import orientations
@@ -41,6 +42,7 @@ def box_starts(
                 f"{sketch.name}: {role}[{picked[role].places[-1]}] is a fifth corner; a box has "
                 "four round its base"
             )
+    refuse_too_few(sketch, picked, held, known_parameters(sketch, held))
     standing = held.standing
     if standing is not None and standing.flush == "base" and len(picked["base"]) >= 3:
         return _from_base(camera, sketch, picked, held, standing, sigma_pixels)

@@ -25,7 +25,8 @@ def refuse_too_few(sketch: Sketch, picked: Picked, held: Held, known: Mapping[in
     sizes = [name for i, name in enumerate(sketch_sizes(sketch)) if i not in known]
     corners = (held.parameters - 1) // 2 if held.kind == "prism" else 0
     freedom = _freedom(held)
-    open_ones = [*_places(freedom), *sizes, *([f"{corners} corners"] if corners else [])]
+    places = [] if corners else _places(held, freedom)
+    open_ones = [*places, *sizes, *([f"{corners} corners"] if corners else [])]
     # a prism's corners hold its place and turn already
     unknown = len(sizes) + (2 * corners + max(freedom - 3, 0) if corners else freedom)
     equations = sum(
@@ -69,10 +70,10 @@ def _freedom(held: Held) -> int:
     return max(turns, 0) + max(moves, 0)
 
 
-def _places(freedom: int) -> list[str]:
+def _places(held: Held, freedom: int) -> list[str]:
     if freedom == 0:
         return []
-    return ["place"] if freedom <= 2 else ["place and turn"]
+    return ["place"] if freedom <= 2 or held.kind == "sphere" else ["place and turn"]
 
 
 def _listed(words: list[str]) -> str:

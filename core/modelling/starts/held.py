@@ -15,6 +15,7 @@ import numpy as np
 from ...arrays import Array
 from ...primitives import Primitive
 from ...relation import Relation
+from ...rotation import hat
 from ...shape.features import Feature
 from ...sketch import Sketch
 from ..holding import PLACING, References, as_feature, holds_of
@@ -108,8 +109,7 @@ def _flush(held: Held, grip: Grip, trials: Trials) -> Rows:
     gaps = _gaps(trials.points(part.spans), grip.to)
     if part.direction is None:
         return gaps, _none(trials)
-    turned = np.cross(trials.rotation @ part.direction, grip.to.direction)
-    return gaps, turned
+    return gaps, trials.rotation @ part.direction @ hat(grip.to.direction)
 
 
 def _lies(held: Held, grip: Grip, trials: Trials) -> Rows:
@@ -166,8 +166,7 @@ def _touches_line(trials: Trials, line: Feature) -> Array:
 
 
 def _parallel(held: Held, grip: Grip, trials: Trials) -> Rows:
-    turned = np.cross(trials.rotation @ _direction(held, grip), grip.to.direction)
-    return _none(trials), turned
+    return _none(trials), trials.rotation @ _direction(held, grip) @ hat(grip.to.direction)
 
 
 def _perpendicular(held: Held, grip: Grip, trials: Trials) -> Rows:
@@ -180,7 +179,7 @@ def _centred(held: Held, grip: Grip, trials: Trials) -> Rows:
     gap = trials.points(part.by[None])[:, 0] - grip.to.point
     if grip.to.kind == "point":
         return gap, _none(trials)
-    return np.cross(gap, grip.to.direction), _none(trials)
+    return gap @ hat(grip.to.direction), _none(trials)
 
 
 def _gaps(points: Array, plane: Feature) -> Array:

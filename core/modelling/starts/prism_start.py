@@ -10,12 +10,13 @@ from ...camera import Camera
 from ...errors import PickError
 from ...sketch import Sketch
 from ..reverse_mapping import grazing_warnings, points_on_plane
-from .base_corners import COLLINEAR, refuse_line
+from .base_corners import turn_of
 from .corner_solids import corner_costs, descended_corners, has_scale, solved_corners
+from .counts import refuse_too_few
 from .found import Starts, known_parameters, plane_of, rivals, things_of
 from .held import Held
 from .orientations import orientations
-from .roles import Picked, corner_plan, corners_seen
+from .roles import Picked, corner_plan, corners_seen, polygon_count
 from .trials import Trials
 
 
@@ -40,8 +41,10 @@ def prism_starts(
         raise PickError(
             f"{sketch.name}: nothing tells its height; pick a corner of top, or give height"
         )
+    refuse_too_few(sketch, picked, held, known)
+    _refuse_triangle(camera, picked, held)
     turn, trials = _turned(camera, picked, held, known)
-    _refuse_shape(sketch, picked, trials.parameters[0], turn)
+    _refuse_shape(sketch, trials.parameters[0], turn)
     plan = corner_plan("prism", picked, turn, sigma_pixels)
     seen = corners_seen(camera, plan, "prism", held.parameters)
     ended = descended_corners(trials, seen, held, known, 1) if len(trials) > 1 else trials
@@ -64,7 +67,7 @@ def _turned(
     for turn in (1.0, -1.0):
         plan = corner_plan("prism", picked, turn, 1.0)
         seen = corners_seen(camera, plan, "prism", held.parameters)
-        solved = solved_corners(orientations(held), seen, held, known)
+        solved = solved_corners(_orientations(held), seen, held, known)
         possible = _possible(solved)
         if possible.any():
             solved = solved.chosen(possible)
@@ -73,6 +76,15 @@ def _turned(
         found.append((not possible.any(), float(cost[order[0]]), turn, solved.chosen(order)))
     _, _, turn, trials = min(found, key=lambda f: f[:2])
     return turn, trials
+
+
+def _orientations(held: Held) -> Array:
+    """Standing it takes the plane's own frame: its polygon holds how it is turned."""
+    standing = held.standing
+    if standing is None:
+        return orientations(held)
+    frame = plane_of(standing).world_from_plane.rotation
+    return (frame if standing.flush == "base" else frame @ np.diag([1.0, -1.0, -1.0]))[None]
 
 
 def _possible(trials: Trials) -> Mask:
@@ -102,15 +114,21 @@ def _refuse_unseen(sketch: Sketch, picked: Picked) -> None:
             )
 
 
-def _refuse_shape(sketch: Sketch, picked: Picked, parameters: Array, turn: float) -> None:
+def _refuse_triangle(camera: Camera, picked: Picked, held: Held) -> None:
+    """Three corners of a base on one line, on the plane that it stands on."""
+    standing, base = held.standing, picked["base"]
+    if standing is None or polygon_count(picked) != 3 or len(base) != 3:
+        return
+    plane = plane_of(standing)
+    points = points_on_plane(camera, plane, base.pixels, base.labels)
+    turn_of(plane.world_from_plane.inverse().apply(points)[:, :2], base.labels)
+
+
+def _refuse_shape(sketch: Sketch, parameters: Array, turn: float) -> None:
     count = (len(parameters) - 1) // 2
     polygon = parameters[1:].reshape(-1, 2)
-    labels = [f"{sketch.name}: {_role(picked, i)}[{i}]" for i in range(count)]
     if turn < 0:
         polygon = polygon[::-1]
-    scale = float(np.ptp(polygon, axis=0).max())
-    if abs(_doubled_area(parameters)) < COLLINEAR / 10 * scale**2 and count == 3:
-        refuse_line(labels, 0, 0.0)
     crossing = _crossing(polygon)
     if crossing is not None:
         i, j = crossing
@@ -123,10 +141,6 @@ def _refuse_shape(sketch: Sketch, picked: Picked, parameters: Array, turn: float
             f"{sketch.name}: the picks fit best with a height of {1e3 * parameters[0]:.1f} mm; "
             "check that top is above base, and the side the normal points to"
         )
-
-
-def _role(picked: Picked, i: int) -> str:
-    return "base" if i in picked["base"].places else "top"
 
 
 def _crossing(polygon: Array) -> tuple[int, int] | None:

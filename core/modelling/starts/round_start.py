@@ -13,6 +13,7 @@ from ...errors import PickError
 from ...reference import ReferencePlane
 from ...sketch import Sketch
 from ..reverse_mapping import grazing_warnings, points_on_plane
+from .counts import refuse_too_few
 from .found import Starts, known_parameters, plane_of, rivals, sketch_sizes, things_of
 from .held import Grip, Held
 from .leaning_round import round_places
@@ -22,7 +23,7 @@ from .standing_round import StandingRays, cones_on, cylinders_on
 from .trials import Trials, best, costs, descended, distinct
 
 # of all guesses so many are descended, in so many steps
-STANDING_DESCENTS, STANDING_STEPS = {"cylinder": 8, "tube": 10, "cone": 24}, 10
+STANDING_DESCENTS, CLOSED_FORM_DESCENTS, STANDING_STEPS = 24, 6, 10
 DESCENTS, STEPS, LAST_DESCENTS, LAST_STEPS = 24, 6, 6, 20
 WALL, THINNEST = 0.75, 0.97
 # an end whose axis is nearer than this (a sine) to square to the sight is seen edge-on
@@ -47,6 +48,7 @@ def round_starts(
     if sketch.kind == "cone" and len(picked["apex"]):
         known[1] = 0.0
     _refuse_open_height(sketch, picked, held, known)
+    refuse_too_few(sketch, picked, held, known)
     seen = round_seen(camera, picked, sketch.kind, held.parameters)
 
     def misfit(trials: Trials) -> Array:
@@ -87,8 +89,9 @@ def _standing(
         return _nothing(held)
     guesses = _placed(plane, shapes, on_base)
     free = np.array([False] * 3 + [True] * 3 + [i not in known for i in range(held.parameters)])
-    chosen = best(guesses, misfit, STANDING_DESCENTS[held.kind])
-    return descended(chosen, misfit, free, STANDING_STEPS)
+    closed_form = held.kind != "cone" and len(rays.near) >= 3
+    descents = CLOSED_FORM_DESCENTS if closed_form else STANDING_DESCENTS
+    return descended(best(guesses, misfit, descents), misfit, free, STANDING_STEPS)
 
 
 def _elsewhere(

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...arrays import Array
+from ...rotation import hat
 from .trials import Trials
 
 HEIGHT = {"cylinder": 1, "cone": 2, "tube": 2}
@@ -62,8 +63,8 @@ class Seen:
 
     def _points(self, trials: Trials) -> Array:
         sight = trials.points(self.by) - self.origin
-        away = np.linalg.norm(sight, axis=2, keepdims=True)
-        missed = np.cross(sight, self.points) / away
+        away = np.sqrt((sight**2).sum(axis=2, keepdims=True))
+        missed = (sight[:, :, None] @ hat(self.points))[:, :, 0] / away
         behind = (sight * self.points).sum(axis=2) <= 0
         missed[behind] = np.inf
         return missed.reshape(len(trials), 3 * len(self.points))
@@ -97,13 +98,14 @@ class Seen:
         level = (end * trials.parameters[:, HEIGHT[self.kind]] / 2)[:, None]
         centre = trials.place + level * axis - self.origin
         along = axis @ rays.T
+        # the way round the circle times the distance from its centre, as far as it is along a ray
+        square = (hat(axis) @ centre[:, :, None])[:, :, 0] @ rays.T
         with np.errstate(divide="ignore", invalid="ignore"):
             depth = (centre * axis).sum(axis=1)[:, None] / along
-            out = depth[:, :, None] * rays - centre[:, None]
-            away = np.sqrt((out**2).sum(axis=2))
-            # the way round the circle, foreshortened as seen
-            around = np.cross(axis[:, None], out) / away[:, :, None]
-            turned = np.sqrt(np.maximum(1 - (around * rays).sum(axis=2) ** 2, 1e-12))
+            away2 = depth * (depth - 2 * centre @ rays.T) + (centre**2).sum(axis=1)[:, None]
+            away = np.sqrt(np.maximum(away2, 1e-18))
+            # foreshortened as seen
+            turned = np.sqrt(np.maximum(1 - (square / away) ** 2, 1e-12))
             missed = (away - radius[:, None]) * np.abs(along) / (depth * turned)
         return np.where(depth > 0, missed, np.inf)
 

@@ -219,6 +219,6 @@ def _heights(rays: StandingRays, base: Array) -> list[float]:
     levels = [rays.origin[2] + rays.far[:, 2] * (-b + sign * root) / a for sign in (-1.0, 1.0)]
     if len(rays.far) > 2:
         # with more picks the middle ones of both will do
-        levels = [np.quantile(level, [0.0, 0.5, 1.0]) for level in levels]
+        levels = [np.sort(level)[[0, len(level) // 2, -1]] for level in levels]
     # one pick may lie on the near side of the circle and the next on the far side
     return sorted({round(float(level), 4) for level in np.concatenate(levels)})

@@ -11,8 +11,7 @@ from ...sketch import Sketch
 from ..holding import References
 from .ball_start import ball_starts
 from .box_start import box_starts
-from .counts import refuse_too_few
-from .found import Starts, known_parameters
+from .found import Starts
 from .held import Held, held_by
 from .prism_start import prism_starts
 from .roles import Picked, picked_roles, polygon_count
@@ -50,10 +49,6 @@ def start(
     if sketch.kind == "prism":
         parameters = 1 + 2 * polygon_count(picked)
     held = held_by(sketch, parameters, references, things)
-    known = known_parameters(sketch, held)
-    if sketch.kind == "cone" and len(picked["apex"]):
-        known[1] = 0.0
-    refuse_too_few(sketch, picked, held, known)
     return STARTS[sketch.kind](camera, sketch, picked, held, pick_sigma_pixels)
 
 
