@@ -62,15 +62,15 @@ class ObjectPanel(CellPanel, bpy.types.Panel):
 
 def draw_sizes(layout, context, thing):
     """A field, 1 sigma and a lock for each size."""
-    fields, unit = context.scene.monocell_object, settings(context).unit
-    sigmas = thing.size_sigma()
+    fields = context.scene.monocell_object
+    sigmas, unit = thing.size_sigma(), settings(context).unit
     column = layout.column(align=True)
     for i, name in enumerate(thing.size_names):
         row = column.row(align=True)
         split = row.split(factor=0.66, align=True)
         split.prop(fields, f"size_{i}", text=name.replace("_", " ").capitalize())
         held = name in thing.known
-        error = "" if sigmas is None or held else f"± {length(sigmas[i], unit)}"
+        error = "" if sigmas is None or held else f"± {length(float(sigmas[i]), unit)}"
         split.label(text="typed" if held else error)
         icon = "LOCKED" if held else "UNLOCKED"
         row.prop(fields, f"known_{i}", text="", icon=icon, emboss=False)

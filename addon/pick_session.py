@@ -44,7 +44,7 @@ class PickSession:
     `taken` are a role and a pixel (2,) of the picture as it came each; `kept` tells that the last
     click left its stage open for more, `closed` the stages that were closed by hand. `things` are
     what the reference may belong to. `typed` are texts by the name of the size, `sized` the size
-    that the keys go to, empty for the one that the mouse sets.
+    that the keys go to, empty for the one that the mouse sets; `unit` is that of numbers without.
     """
 
     plan: PickPlan
@@ -57,6 +57,7 @@ class PickSession:
     typed: Mapping[str, str] = field(default_factory=dict)
     sized: str = ""
     sigma: float = 1.0
+    unit: str = "mm"
 
     @property
     def stage(self) -> Stage | None:
@@ -84,7 +85,7 @@ class PickSession:
     @property
     def known(self) -> dict[str, float]:
         """The sizes that were typed, metres, and those that the plan knows."""
-        values = {name: metres_of(text) for name, text in self.typed.items()}
+        values = {name: metres_of(text, self.unit) for name, text in self.typed.items()}
         typed = {name: value for name, value in values.items() if value is not None}
         return {**self.plan.known, **typed}
 
@@ -111,7 +112,7 @@ class PickSession:
         for name in self.sizes:
             text = self.typed.get(name, "")
             if text or name == self.sized:
-                unit = "" if text.endswith(("m", "c")) else " mm"
+                unit = "" if text.endswith(("m", "c")) else f" {self.unit}"
                 mark = "|" if name == self.size_now else ""
                 shown.append(f"{name.replace('_', ' ')} = {text}{mark}{unit}")
         return "   ".join(shown)

@@ -4,6 +4,7 @@
 import json
 
 from .on_picture import CONFIRM_EVENTS, OnPicture
+from .preferences import settings
 from .refusals import refuses_to_start
 from .typed_size import typed_key
 
@@ -32,7 +33,12 @@ class PicksOnPicture(OnPicture):
         sigma = scene.monocell_inputs.pick_sigma_pixels
         plan = plan_of(self.kind, self.way)
         self._session = PickSession(
-            plan, cell.standing_camera(), reference, cell.objects, sigma=sigma
+            plan,
+            cell.standing_camera(),
+            reference,
+            cell.objects,
+            sigma=sigma,
+            unit=settings(context).unit,
         )
         self._shown = None
         started = self.begin(context, event)

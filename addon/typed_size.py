@@ -5,7 +5,9 @@ from __future__ import annotations
 
 from typing import Any
 
-UNITS = {"": 1e-3, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "c": 1e-2}
+UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
+# what a unit begins with while it is being typed
+BEGUN = ("", "m", "mm", "c", "cm")
 NAMED = (
     *("ZERO", "ONE", "TWO", "THREE", "FOUR"),
     *("FIVE", "SIX", "SEVEN", "EIGHT", "NINE"),
@@ -32,14 +34,14 @@ def with_sign(text: str, sign: str) -> str:
         return text
     longer = text + sign
     unit = longer.lstrip("0123456789.")
-    spoilt = longer.count(".") > 1 or unit not in UNITS
+    spoilt = longer.count(".") > 1 or unit not in BEGUN
     return text if spoilt else longer
 
 
-def metres_of(text: str) -> float | None:
-    """The size in metres: millimetres where no unit is typed. None for no size above zero."""
+def metres_of(text: str, usual: str = "mm") -> float | None:
+    """The size in metres, in the `usual` unit where none is typed. None for no size above zero."""
     number = text.rstrip("cm")
-    unit = text[len(number) :]
+    unit = text[len(number) :] or usual
     try:
         value = float(number) * UNITS[unit]
     except (ValueError, KeyError):

@@ -261,7 +261,7 @@ def test_sizes_are_typed_in_millimetres_or_with_their_unit(text, metres):
     assert typed(session(BOX, *BASE), text).known == {"size_z": pytest.approx(metres)}
 
 
-@pytest.mark.parametrize("text", ["0", ".", "m"])
+@pytest.mark.parametrize("text", ["0", ".", "m", "5c"])
 def test_what_is_no_size_is_not_taken_for_one(text):
     assert typed(session(BOX, *BASE), text).known == {}
 
