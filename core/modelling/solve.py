@@ -17,7 +17,7 @@ from ..references.sources import FeatureOf
 from ..sketch import Sketch
 from .candidates import Chosen, choose
 from .following import followed
-from .holding import PLACING, References, holds_of, relations_of
+from .holding import References, holds_of, relations_of
 from .model_fit import ModelFit, fit_model
 from .modelled import Modelled, modelled
 from .pick_equations import pick_observer
@@ -198,19 +198,12 @@ class _Work:
         return not any(t.is_object and t.name in self.waiting for t in targets)
 
     def _loosened(self, sketch: Sketch, references: References) -> Sketch:
-        """The sketch without relations to what waits for it in turn; it must not stand on that."""
-        relations = relations_of(sketch)
+        """The sketch without relations to what waits for it in turn."""
         kept = tuple(
             relation
-            for relation in relations
+            for relation in relations_of(sketch)
             if self._stands(replace(sketch, on=None, relations=(relation,)), references)
         )
-        lost = [r for r in relations if r not in kept and r.kind in PLACING]
-        if lost:
-            raise InvalidValue(
-                f"{sketch.name}: {lost[0].kind} {lost[0].to}, which is held by {sketch.name} in "
-                "turn; let one of them stand on something else"
-            )
         return replace(sketch, on=None, relations=kept)
 
 
