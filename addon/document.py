@@ -113,13 +113,14 @@ def show_objects(scene: Any, cell: Cell, names: Collection[str] | None = None) -
 
     Returns a word on every object whose texture is missing: it has its colour alone.
     """
-    from ..scene.objects import build_object
+    from ..scene.objects import build_object, find_object
     from ..scene.textures import is_textured, paint
 
     collection, told = objects_collection(scene), []
     for thing in cell.objects:
         if names is not None and thing.name not in names:
             continue
+        _leave_edit_mode(find_object(thing.name, collection))
         ob = build_object(thing, collection)
         if is_textured(thing):
             try:
@@ -127,6 +128,17 @@ def show_objects(scene: Any, cell: Cell, names: Collection[str] | None = None) -
             except PictureError as error:
                 told.append(f"{thing.name}: {error}")
     return tuple(told)
+
+
+def _leave_edit_mode(ob: Any | None) -> None:
+    """Blender lets no mesh be rebuilt while it is edited."""
+    layer = bpy.context.view_layer
+    if ob is None or not ob.data.is_editmode or ob.name not in layer.objects:
+        return
+    # the mode is left by the active object, which another may have become meanwhile
+    before, layer.objects.active = layer.objects.active, ob
+    bpy.ops.object.mode_set(mode="OBJECT")
+    layer.objects.active = before
 
 
 def objects_collection(scene: Any) -> Any:
