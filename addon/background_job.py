@@ -133,6 +133,9 @@ class WorksInBackground:
     def _ended(self, context):
         try:
             result = self._job.result()
+            if context.window_manager.monocell_work.cancel:
+                # it had come to its end just before it could be told
+                raise Stopped
         except Stopped:
             self.report({"INFO"}, "Cancelled: nothing was changed")
             return {"CANCELLED"}

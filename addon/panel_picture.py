@@ -4,6 +4,7 @@
 import bpy
 
 from .document import bare_cell, has_cell
+from .operators.find_pictures import FindPictures
 from .operators.look_through import LookThrough
 from .operators.open_cell import OpenCell
 from .operators.open_picture import OpenPicture
@@ -53,6 +54,8 @@ def _draw_opened(layout, scene):
         seen = "HIDE_OFF" if plate.show_background_image else "HIDE_ON"
         row.prop(plate, "show_background_image", text="", icon=seen)
         row.prop(plate, "alpha", text="Opacity", slider=True)
+    if picture_step(scene).mark == "doubt" and stored.shown_picture:
+        layout.operator(FindPictures.bl_idname, icon="VIEWZOOM")
     numbers(
         layout,
         (

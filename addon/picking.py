@@ -41,12 +41,14 @@ class PicksOnPicture(OnPicture):
             unit=settings(context).unit,
         )
         self._shown = None
-        begun = self.begin(context, event)
-        context.window_manager.monocell_work.picking = "RUNNING_MODAL" in begun
-        # a tool's own click is the first pick
-        if begun == {"RUNNING_MODAL"} and event.type == "LEFTMOUSE" and event.value == "PRESS":
-            self.handle(context, context.area, event)
-        return begun
+        started = self.begin(context, event)
+        if "RUNNING_MODAL" not in started:
+            return started
+        context.window_manager.monocell_work.picking = True
+        # the click that a tool began with is the first pick
+        if event.type == "LEFTMOUSE" and event.value == "PRESS":
+            return self.handle(context, context.area, event) or started
+        return started
 
     def end(self, context):
         """Let the sightings be seen again."""

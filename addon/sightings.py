@@ -83,6 +83,33 @@ def named_from(cell: Cell, picture: str, folder: Path | None = None) -> str:
         return str(path.resolve())
 
 
+def rename_pictures(scene: Any, folder: Path) -> int:
+    """Name the pictures that are missing by files of the same name in `folder`. Returns how many.
+
+    Raises PictureError when none is missing, or for the first that is not there either.
+    """
+    cell = bare_cell(scene)
+    named = [s.picture for s in cell.sightings] + ([cell.picture] if cell.picture else [])
+    missing = {name for name in named if not cell.path_of(name).is_file()}
+    if not missing:
+        raise PictureError("no picture of this cell is missing")
+    for name in sorted(missing):
+        if not (folder / Path(name).name).is_file():
+            raise PictureError(f"{folder / Path(name).name}: there is no such picture either")
+    # the document's names start there from now on: its old folder may be gone
+    moved = replace(cell, folder=folder.resolve())
+    new = {
+        name: Path(name).name if name in missing else named_from(moved, name, cell.folder)
+        for name in named
+    }
+    sightings = tuple(replace(s, picture=new.get(s.picture, s.picture)) for s in cell.sightings)
+    picture = new.get(cell.picture, cell.picture) if cell.picture else None
+    write_scene(scene, replace(moved, sightings=sightings, picture=picture), stored_report(scene))
+    stored = scene.monocell_cell
+    stored.shown_picture = new.get(stored.shown_picture, stored.shown_picture)
+    return len(missing)
+
+
 def _write(scene: Any, sightings: Iterable[Sighting], kept: Iterable[int | None]) -> None:
     cell, report = bare_cell(scene), stored_report(scene)
     changed = replace(cell, sightings=tuple(sightings))

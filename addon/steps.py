@@ -31,7 +31,7 @@ def picture_step(scene: Any) -> Step:
         return Step("doubt", "The document names no picture: add sightings with theirs.")
     cell = bare_cell(scene)
     if not cell.path_of(shown).is_file():
-        return Step("doubt", f"{PurePath(shown).name} is no longer in its folder: see below.")
+        return Step("doubt", f"{PurePath(shown).name} is no longer in its folder.")
     return Step("done")
 
 

@@ -12,6 +12,7 @@ VERBS = (
     "drop_picture",
     "look_through",
     "show_picture",
+    "find_pictures",
     "add_pictures",
     "paste_sightings",
     "read_sightings",

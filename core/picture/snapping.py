@@ -23,6 +23,8 @@ MARGIN = 10
 CORNER_REACH, CORNER_HOLE, ROUNDS = 7.0, 2.5, 12
 # a gradient worth snapping to, in sigmas of noise, of the strongest near, and at all
 LEAST_SIGMAS, LEAST_SHARE, LEAST_GRADIENT = 6.0, 0.2, 2e-3
+# a step of about a tenth of the light there: less is the grain of wood, a stain, a soft shadow
+LEAST_CONTRAST = 0.03
 # this far from an edge its gradient has fallen to less than this share, pixels
 WIDTH, MOST_BEYOND = 4.0, 0.6
 # second differences both ways, which see noise and no edges, scaled to the noise of a pixel
@@ -94,7 +96,8 @@ def _least_strength(cut: Array, strength: Array) -> float:
     """The gradient of a step that is no noise (Immerkaer 1996), nor a faint one beside a strong."""
     rough = cv2.filter2D(cut, cv2.CV_64F, SECOND_DIFFERENCE)
     noise = 1.4826 * float(np.median(np.abs(rough))) * GRADIENT_NOISE
-    return max(LEAST_SIGMAS * noise, LEAST_SHARE * float(strength.max()), LEAST_GRADIENT)
+    faint = LEAST_CONTRAST * float(np.median(cut))
+    return max(LEAST_SIGMAS * noise, LEAST_SHARE * float(strength.max()), faint, LEAST_GRADIENT)
 
 
 def _corner(gx: Array, gy: Array, at: Array, reach: float, least: float) -> Array | None:

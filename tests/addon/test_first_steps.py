@@ -103,3 +103,20 @@ def test_files_that_are_dropped_find_their_operator(addon, tmp_path):
     group, name = pictures.split(".")
     getattr(getattr(addon.ops, group), name)(filepath=str(path))
     assert addon.context.scene.monocell_cell.shown_picture == "dropped.png"
+
+
+def test_pictures_that_were_moved_are_found_again(addon, module, tmp_path):
+    here, there = tmp_path / "here", tmp_path / "there"
+    here.mkdir()
+    path = bench_cell.write_bench(here)
+    addon.ops.monocell.open_cell(filepath=str(path))
+    scene = addon.context.scene
+    with pytest.raises(RuntimeError, match="no picture of this cell is missing"):
+        addon.ops.monocell.find_pictures(directory=str(tmp_path))
+    here.rename(there)
+    assert module("addon.steps").picture_step(scene).mark == "doubt"
+    with pytest.raises(RuntimeError, match="there is no such picture either"):
+        addon.ops.monocell.find_pictures(directory=str(tmp_path))
+    assert addon.ops.monocell.find_pictures(directory=str(there)) == {"FINISHED"}
+    assert module("addon.steps").picture_step(scene).mark == "done"
+    assert addon.ops.monocell.calibrate() == {"FINISHED"}

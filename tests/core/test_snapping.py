@@ -101,6 +101,12 @@ def test_a_shaded_wall_has_no_edge():
     assert snapped(photographed(0.2 + 0.006 * u, 1.0), np.array([36.0, 36.0]), 10.0) is None
 
 
+def test_the_grain_of_wood_is_no_edge():
+    u, v = grid()
+    wood = 0.4 + 0.02 * np.sign(np.sin(0.5 * u + 0.9 * v))
+    assert snapped(photographed(wood, 1.0), np.array([36.0, 36.0]), 10.0) is None
+
+
 def test_at_the_picture_s_rim_and_beside_it_nothing_breaks():
     picture = wedge((3, 4), 0.2, 1.5)
     assert np.linalg.norm(snapped(picture, np.array([4.0, 5.0]), 8.0).pixel - [3, 4]) < 1.0

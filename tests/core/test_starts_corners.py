@@ -8,7 +8,9 @@ import pytest
 from held_scene import assert_same, corners, sketched, solve, standing, turned
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from monocell.core import Pose, ReferencePlane
 from monocell.core.errors import PickError
+from monocell.core.modelling.candidates import choose
 from monocell.core.primitives import Box, Prism, polygon_centre
 from monocell.core.relation import Relation
 from picked_scene import FLOOR, RAMP, WALL, camera
@@ -92,6 +94,26 @@ def test_a_box_hangs_by_its_top_from_a_ceiling():
     assert_same(solved(box, box_picks(box, top=(0, 1, 3)), relations=held), box)
 
 
+@pytest.mark.parametrize("clockwise", [False, True])
+def test_one_corner_is_enough_for_the_mirror_image_of_a_solved_box(clockwise):
+    box = block()
+    sides = np.array([-1.0, 1.0, 1.0])
+    middle = WALL.point + 0.3 * WALL.normal
+    about = ReferencePlane("middle", middle, WALL.normal)
+    mirror = np.eye(3) - 2 * np.outer(about.normal, about.normal)
+    rotation = mirror @ box.world_from_object.rotation @ np.diag(sides)
+    place = middle + mirror @ (box.world_from_object.translation - middle)
+    image = Box("it", Pose(rotation, place), size=box.size)
+    first = Box("first", box.world_from_object, size=box.size)
+    picks = box_picks(image, base=(), top=(0, 1))
+    if clockwise:
+        picks = {"base": [], "top": picks["top"][1::-1]}
+    sketch = sketched(image, picks, relations=[Relation("symmetric", "first", about="middle")])
+    chosen = choose(camera(), sketch, {"middle": about}, {"first": first}, 1.0)
+    assert_same(chosen.fitted.thing, image)
+    assert chosen.fitted.observed.residuals == pytest.approx(0, abs=1e-6)
+
+
 def prism(plane=FLOOR, height=0.2):
     polygon = POLYGON - polygon_centre(POLYGON)
     return Prism("it", standing(plane, height, 0.05, 0.0, 0.0), polygon=polygon, height=height)
@@ -153,7 +175,7 @@ REFUSED = {
         {**box_picks(block()), "base": [*box_picks(block())["base"], [1.0, 2.0]]},
         r"it: base\[4\] is a fifth corner",
     ),
-    "the top alone": (box_picks(block(), ()), "it: the picks do not determine"),
+    "the top alone": (box_picks(block(), ()), "it: no corner of its base is picked"),
     "crossing": (CROSSED, "it: the top corners cross; pick them in order round the top"),
     "top below base": (UPSIDE, r"it: the picks fit best with a size_z of -[\d.]+ mm"),
 }

@@ -51,16 +51,21 @@ def steps():
     # started, then cancelled with Esc: nothing may have changed
     before = stored().text
     in_view(bpy.ops.monocell.calibrate, "INVOKE_DEFAULT")
-    yield 0.3
+    yield 0.1
     found["was_working"] = working()
-    yield from shot("3_working")
-    found["share"] = bpy.context.window_manager.monocell_work.share
     press("ESC")
     yield from worked()
     found["unchanged"] = stored().text == before and stored().report == ""
 
     in_view(bpy.ops.monocell.find_all, "INVOKE_DEFAULT")
-    yield from worked()
+    shares = []
+    while working() and len(shares) < 600:
+        shares.append(bpy.context.window_manager.monocell_work.share)
+        if len(shares) == 4:
+            yield from shot("3_working")
+        yield 0.1
+    found["shares"] = shares
+    yield from settle()
     found["found"] = [row.status for row in stored().sightings]
     yield from shot("4_found")
 
@@ -90,7 +95,8 @@ def steps():
     bpy.context.scene.monocell_inputs.place = job["point"]
     in_view(bpy.ops.monocell.add_point, "INVOKE_DEFAULT")
     yield PAUSE
-    yield from click(job["point_at"])
+    # Ctrl keeps the click where it is: beside the point there may be the grain of the wood
+    yield from click(job["point_at"], ctrl=True)
     found["left_over"] |= handlers()
     save("point")
     in_view(bpy.ops.monocell.add_point, "INVOKE_DEFAULT")

@@ -47,11 +47,16 @@ def test_no_step_fails(worked):
     assert not found["left_over"]
 
 
-def test_work_shows_its_progress_and_escape_cancels_it_without_a_trace(worked):
+def test_escape_cancels_the_work_without_a_trace(worked):
     found = worked[1]
     assert found["was_working"] == "Calibrating"
-    assert 0 < found["share"] < 1
     assert found["unchanged"]
+
+
+def test_progress_goes_up_while_the_window_lives(worked):
+    shares = worked[1]["shares"]
+    assert shares == sorted(shares)
+    assert len(set(shares)) > 2
 
 
 def test_all_balls_are_found_in_the_background(worked):

@@ -73,7 +73,8 @@ def steps():
     found["left_over"] |= handlers()
     save("cancelled")
 
-    in_view(bpy.ops.monocell.add_cylinder, "INVOKE_DEFAULT")
+    # with the toolbar's tool the first click is a pick already
+    in_view(bpy.ops.wm.tool_set_by_id, name="monocell.tool_add_cylinder")
     yield PAUSE
     *most, top, last = job["drum"]
     for pixel in most:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from ...arrays import Array
@@ -14,7 +16,7 @@ from ...sketch import Sketch
 from ..picks import RolePicks
 from ..reverse_mapping import grazing_warnings, points_on_plane
 from .base_corners import refuse_crossing, top_heights, turn_of
-from .corner_solids import corner_costs, descended_corners, has_scale, solved_corners
+from .corner_solids import corner_costs, descended_corners, grazing_base, has_scale, solved_corners
 from .counts import refuse_too_few
 from .found import Starts, known_parameters, plane_of, rivals, things_of
 from .held import Grip, Held
@@ -111,6 +113,8 @@ def _from_any(camera: Camera, sketch: Sketch, picked: Picked, held: Held, sigma:
             f"{sketch.name}: nothing tells how large it is: a box that stands nowhere needs a "
             "known size"
         )
+    _refuse_one_end(sketch, picked, held, known)
+    grazing = grazing_base(camera, picked, held)
     for role in ("base", "top"):
         refuse_crossing(picked[role])
     turns = FREE_TURNS if not held.grips else 2 * FREE_TURNS
@@ -131,7 +135,20 @@ def _from_any(camera: Camera, sketch: Sketch, picked: Picked, held: Held, sigma:
         _refuse_negative(sketch, min(guessed, key=lambda g: g[0])[1])
     _, turn, trials, cost = min(found, key=lambda f: f[0])
     plan = corner_plan("box", picked, turn, sigma)
-    return Starts(things_of(sketch, rivals(trials, cost, sigma)), plan)
+    return Starts(things_of(sketch, rivals(trials, cost, sigma)), plan, grazing)
+
+
+def _refuse_one_end(sketch: Sketch, picked: Picked, held: Held, known: Mapping[int, float]) -> None:
+    """A top alone above the plane may be small and near to it, or large and far."""
+    stands = len(held.grips) == 1 and held.grips[0].flush in ("base", "top")
+    if not stands or held.others or known:
+        return
+    other = "top" if held.grips[0].flush == "base" else "base"
+    if len(picked[other]) and not len(picked[str(held.grips[0].flush)]):
+        raise PickError(
+            f"{sketch.name}: no corner of its {held.grips[0].flush} is picked, so that it may be "
+            f"small and near to {held.grips[0].name} or large and far; pick one, or give a size"
+        )
 
 
 def _refuse_negative(sketch: Sketch, trials: Trials) -> None:

@@ -13,9 +13,13 @@ from functools import partial
 import numpy as np
 
 from ...arrays import Array
+from ...camera import Camera
 from ..held_rows import across_of
+from ..reverse_mapping import grazing_warnings, points_on_plane
+from .found import plane_of
 from .held import Grip, Held
 from .own_parts import own_part
+from .roles import Picked
 from .seen import Seen
 from .trials import Trials, best, costs, descended, distinct
 
@@ -71,8 +75,19 @@ def corner_costs(trials: Trials, seen: Seen, held: Held) -> Array:
 
 def has_scale(held: Held, known: Mapping[int, float]) -> bool:
     """Whether anything tells metres: a known size, or a place that the object is held to."""
-    placing = any(g.kind not in ("parallel", "perpendicular") for g in held.grips)
-    return bool(known) or placing
+    return bool(known) or any(_held_points(grip, held) for grip in held.grips)
+
+
+def grazing_base(camera: Camera, picked: Picked, held: Held) -> tuple[str, ...]:
+    """Doubts about base corners on the plane that an object stands on.
+
+    Raises PickError for one above its horizon.
+    """
+    standing, base = held.standing, picked["base"]
+    if standing is None or standing.flush != "base" or not len(base):
+        return ()
+    points_on_plane(camera, plane_of(standing), base.pixels, base.labels)
+    return tuple(grazing_warnings(camera, plane_of(standing), base.pixels, base.labels))
 
 
 def _residuals(trials: Trials, seen: Seen, held: Held) -> Array:

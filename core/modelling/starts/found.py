@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
+from ...errors import InvalidValue
 from ...pose import Pose
 from ...primitives import KINDS, Primitive, polygon_centre
 from ...reference import ReferencePlane
@@ -60,11 +61,20 @@ def sketch_sizes(sketch: Sketch) -> tuple[str, ...]:
 def things_of(
     sketch: Sketch, trials: Trials, known: Mapping[str, float] | None = None
 ) -> tuple[Primitive, ...]:
-    """The guesses as objects that keep all that the operator said."""
-    return tuple(
-        _thing(sketch, trials.rotation[i], trials.place[i], trials.parameters[i], known or {})
-        for i in range(len(trials))
-    )
+    """The guesses as objects that keep all that the operator said.
+
+    Raises InvalidValue where none of them can be.
+    """
+    found, refusals = [], []
+    for i in range(len(trials)):
+        shape = trials.rotation[i], trials.place[i], trials.parameters[i]
+        try:
+            found.append(_thing(sketch, *shape, known or {}))
+        except InvalidValue as error:
+            refusals.append(error)
+    if refusals and not found:
+        raise refusals[0]
+    return tuple(found)
 
 
 def rivals(trials: Trials, costs: Array, sigma_pixels: float) -> Trials:

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ...arrays import Array
-from ...primitives import Primitive
+from ...pose import Pose
+from ...primitives import KINDS, Box, Primitive, Prism
 from ...relation import Relation
 from ...rotation import hat
 from ...shape.features import Feature
@@ -82,10 +84,16 @@ class Held:
 def held_by(
     sketch: Sketch, parameters: int, references: References, things: Mapping[str, Primitive]
 ) -> Held:
-    """What holds the object of a sketch. Raises InvalidValue for a name that is not there."""
+    """What holds the object of a sketch.
+
+    Raises InvalidValue for a name that is not there, and for what such a relation can't mean.
+    """
     grips, others = [], []
+    own = _any_of(sketch, parameters)
     for hold in holds_of(sketch, references, list(things)):
         relation = hold.relation
+        # what means nothing is refused by the exact relation, in words
+        hold.rows({**things, sketch.name: own}, references)
         if relation.kind in ("same_size", "symmetric"):
             about = None if hold.about is None else as_feature(hold.about, things, references)
             others.append((relation, things[hold.to.name], about))
@@ -94,6 +102,21 @@ def held_by(
         kind = "touches" if sketch.kind == "sphere" and relation.kind in PLACING else relation.kind
         grips.append(Grip(relation.to, kind, relation.own, to))
     return Held(sketch.kind, parameters, tuple(grips), tuple(others))
+
+
+def _any_of(sketch: Sketch, parameters: int) -> Primitive:
+    """Some object of the kind, at no special angle to anything."""
+    pose = Pose.from_rotation_vector([0.31, -0.47, 0.59], [0.13, 0.17, 0.19])
+    if sketch.kind == "box":
+        return Box(sketch.name, pose, size=np.ones(3))
+    if sketch.kind == "prism":
+        count = max((parameters - 1) // 2, 3)
+        angle = 2 * np.pi * np.arange(count) / count
+        around = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        return Prism(sketch.name, pose, polygon=around, height=1.0)
+    names = KINDS[sketch.kind].size_names
+    sizes: dict[str, Any] = {name: 0.5 if name == "inner_radius" else 1.0 for name in names}
+    return KINDS[sketch.kind](sketch.name, pose, **sizes)
 
 
 Rows = tuple[Array, Array]

@@ -9,9 +9,9 @@ from ...arrays import Array, Mask
 from ...camera import Camera
 from ...errors import PickError
 from ...sketch import Sketch
-from ..reverse_mapping import grazing_warnings, points_on_plane
+from ..reverse_mapping import points_on_plane
 from .base_corners import turn_of
-from .corner_solids import corner_costs, descended_corners, has_scale, solved_corners
+from .corner_solids import corner_costs, descended_corners, grazing_base, has_scale, solved_corners
 from .counts import refuse_too_few
 from .found import Starts, known_parameters, plane_of, rivals, things_of
 from .held import Held
@@ -42,6 +42,7 @@ def prism_starts(
             f"{sketch.name}: nothing tells its height; pick a corner of top, or give height"
         )
     refuse_too_few(sketch, picked, held, known)
+    grazing = grazing_base(camera, picked, held)
     _refuse_triangle(camera, picked, held)
     turn, trials = _turned(camera, picked, held, known)
     _refuse_shape(sketch, trials.parameters[0], turn)
@@ -51,9 +52,7 @@ def prism_starts(
     possible = _possible(ended)
     ended = ended.chosen(possible) if possible.any() else trials.chosen(np.array([0]))
     cost = corner_costs(ended, seen, held)
-    return Starts(
-        things_of(sketch, rivals(ended, cost, sigma_pixels)), plan, _grazing(camera, picked, held)
-    )
+    return Starts(things_of(sketch, rivals(ended, cost, sigma_pixels)), plan, grazing)
 
 
 def _turned(
@@ -165,12 +164,3 @@ def _doubled_area(parameters: Array) -> float:
     polygon = parameters[1:].reshape(-1, 2)
     after = np.roll(polygon, -1, axis=0)
     return float((polygon[:, 0] * after[:, 1] - polygon[:, 1] * after[:, 0]).sum())
-
-
-def _grazing(camera: Camera, picked: Picked, held: Held) -> tuple[str, ...]:
-    standing, base = held.standing, picked["base"]
-    if standing is None or standing.flush != "base" or not len(base):
-        return ()
-    # a corner above the horizon is named here
-    points_on_plane(camera, plane_of(standing), base.pixels, base.labels)
-    return tuple(grazing_warnings(camera, plane_of(standing), base.pixels, base.labels))

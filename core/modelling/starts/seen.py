@@ -112,7 +112,7 @@ class Seen:
     def _sides(self, trials: Trials, radius: Array, top: Array) -> Array:
         """Angles (M, N) by which rays miss the endless cone through both ends."""
         height = trials.parameters[:, HEIGHT[self.kind]]
-        slope = ((radius - top) / height)[:, None]
+        slope = ((radius - top) / np.where(height == 0, np.nan, height))[:, None]
         local = np.swapaxes(trials.rotation, 1, 2)
         eye = (local @ (self.origin - trials.place)[:, :, None])[:, None, :, 0]
         rays = self.sides @ np.swapaxes(local, 1, 2)

@@ -13,6 +13,7 @@ from .ball_start import ball_starts
 from .box_start import box_starts
 from .found import Starts
 from .held import Held, held_by
+from .mirrored import mirror_of, mirrored_starts
 from .prism_start import prism_starts
 from .roles import Picked, picked_roles, polygon_count
 from .round_start import round_starts
@@ -49,6 +50,9 @@ def start(
     if sketch.kind == "prism":
         parameters = 1 + 2 * polygon_count(picked)
     held = held_by(sketch, parameters, references, things)
+    mirror = mirror_of(sketch, held)
+    if mirror is not None:
+        return mirrored_starts(camera, sketch, picked, mirror, pick_sigma_pixels)
     return STARTS[sketch.kind](camera, sketch, picked, held, pick_sigma_pixels)
 
 
