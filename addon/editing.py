@@ -40,6 +40,10 @@ def with_size(cell: Cell, name: str, size: str, metres: float | None, sigma: flo
         )
     known = {key: value for key, value in thing.known.items() if key != size}
     if metres is not None:
+        if metres <= 0 and (thing.kind, size, metres) != ("cone", "top_radius", 0):
+            raise InvalidValue(
+                f"{name}: {size} must be above zero, got {1e3 * metres:g} mm; type a length"
+            )
         known[size] = metres
         # refuses what can't be before anything is solved
         sized = _resized(cell, thing, size, metres)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from ..core.modelling.reverse_mapping import points_on_plane_or_nan
 from ..core.primitives import Box, Primitive, Prism, Sphere
 from ..core.reference import ReferencePlane
 from ..core.shape.features import feature, feature_names
-from ..core.shape.hits import face_names, hits, occluded
+from ..core.shape.hits import bounds, face_names, hits, occluded
 from ..core.shape.intervals import BOX_FACES
 
 CIRCLE = np.linspace(0.0, 2 * np.pi, 65)
@@ -43,17 +44,18 @@ def shown_at(cell: Cell, pixel: Array, reach: float, *, axis: bool = False) -> S
     shows nothing that could be a reference, such as a ball.
     """
     camera = cell.standing_camera()
+    near = [thing for thing in cell.objects if _near(thing, camera, pixel, reach)]
     origin, rays = camera.rays_world(pixel[None])
-    met = [hits(thing, origin, rays) for thing in cell.objects]
+    met = [hits(thing, origin, rays) for thing in near]
     depths = np.array([hit.depth[0] for hit in met])
-    nearest = int(depths.argmin()) if len(depths) and np.isfinite(depths).any() else None
     if not axis:
-        edge = _edge_at(cell, camera, pixel, reach)
+        edge = _edge_at(near, camera, pixel, reach)
         if edge is not None:
             return edge
-    if nearest is None:
+    if not np.isfinite(depths).any():
         return _plane_at(cell, camera, pixel)
-    thing = cell.objects[nearest]
+    nearest = int(depths.argmin())
+    thing = near[nearest]
     face = face_names(thing)[int(met[nearest].face[0])]
     name = "axis" if axis or face in ("side", "inside") else face
     return _of(thing, name) if name in feature_names(thing) else None
@@ -82,10 +84,19 @@ def _of(thing: Primitive, name: str) -> Shown:
     return Shown(f"{thing.name}.{name}", feature(thing, name).kind, outline_of(thing, name))
 
 
-def _edge_at(cell: Cell, camera: Camera, pixel: Array, reach: float) -> Shown | None:
-    """The nearest visible edge, if it is near enough."""
+def _near(thing: Primitive, camera: Camera, pixel: Array, reach: float) -> bool:
+    """Whether a pixel lies on what is seen of a thing, or within reach of it."""
+    left, top, right, bottom = bounds(thing, camera)
+    u, v = pixel
+    return left - reach <= u <= right + reach and top - reach <= v <= bottom + reach
+
+
+def _edge_at(
+    things: Sequence[Primitive], camera: Camera, pixel: Array, reach: float
+) -> Shown | None:
+    """The nearest visible edge, if it is near enough. `things` are all that may hide it."""
     best: tuple[float, Shown] | None = None
-    for index, thing in enumerate(cell.objects):
+    for index, thing in enumerate(things):
         for name in feature_names(thing):
             if name.startswith("axis") or not _is_edge(thing, name):
                 continue
@@ -93,7 +104,7 @@ def _edge_at(cell: Cell, camera: Camera, pixel: Array, reach: float) -> Shown | 
             away, point = _from_line(camera, shown.line, pixel)
             if away > reach or (best is not None and away >= best[0]):
                 continue
-            if _seen(cell, camera, index, point):
+            if _seen(things, camera, index, point):
                 best = away, shown
     return None if best is None else best[1]
 
@@ -119,10 +130,10 @@ def _from_line(camera: Camera, line: Array, pixel: Array) -> tuple[float, Array]
     return float(away[best]), points[best]
 
 
-def _seen(cell: Cell, camera: Camera, index: int, point: Array) -> bool:
+def _seen(things: Sequence[Primitive], camera: Camera, index: int, point: Array) -> bool:
     origin = camera.centre_world
-    others = occluded(cell.objects, origin, point[None], [index])[0]
-    itself = occluded([cell.objects[index]], origin, point[None], [-1], OWN_SURFACE)[0]
+    others = occluded(things, origin, point[None], [index])[0]
+    itself = occluded([things[index]], origin, point[None], [-1], OWN_SURFACE)[0]
     return not (others or itself)
 
 

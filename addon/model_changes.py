@@ -4,13 +4,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from ..core.cell import Cell
 from ..core.errors import InvalidValue
 from .document import show_objects, stored_report, write_scene
-from .editing import Edited
 from .modelled import standing_cell
+
+if TYPE_CHECKING:
+    # solving takes its time to import, and registering has none
+    from .editing import Edited
 
 
 def change_model(scene: Any, edit: Callable[[Cell, float], Edited]) -> Edited:
@@ -21,7 +25,7 @@ def change_model(scene: Any, edit: Callable[[Cell, float], Edited]) -> Edited:
     edited = edit(standing_cell(scene), scene.monocell_inputs.pick_sigma_pixels)
     write_scene(scene, edited.cell, stored_report(scene))
     told = show_objects(scene, edited.cell, edited.changed)
-    return Edited(edited.cell, edited.changed, (*edited.warnings, *told))
+    return replace(edited, warnings=(*edited.warnings, *told))
 
 
 def active_object(context: Any) -> Any | None:

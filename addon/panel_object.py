@@ -23,7 +23,8 @@ class ObjectPanel(CellPanel, bpy.types.Panel):
     """Sizes, relations, motion and looks of the active object."""
 
     bl_idname = "MONOCELL_PT_object"
-    bl_label = "Object"
+    # the object's own name stands in the head
+    bl_label = ""
     bl_parent_id = "MONOCELL_PT_model"
 
     @classmethod

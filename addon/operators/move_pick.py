@@ -7,13 +7,15 @@ import bpy
 from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
 from ..cell_scene import looks_through
-from ..model_changes import change_model, name_of
+from ..model_changes import active_object, change_model, name_of
 from ..on_picture import OnPicture, window_region
 from ..picture_frame import picture_frame
 from ..polls import NeedsPose
 from ..refusals import refuses, refuses_to_start
 
 REACH_POINTS = 14.0
+# a tool's click beside all picks chooses another object, as ever
+PASSED_ON = {"CANCELLED", "PASS_THROUGH"}
 
 
 class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
@@ -42,16 +44,17 @@ class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
         from ..pick_handles import Handles
 
         cell = standing_cell(context.scene)
+        pressed = event.type == "LEFTMOUSE" and event.value == "PRESS"
+        if pressed and not self.name and active_object(context) is None:
+            return PASSED_ON
         thing = object_called(cell, name_of(context, self.name))
+        if pressed and not thing.picks:
+            return PASSED_ON
         sigma = context.scene.monocell_inputs.pick_sigma_pixels
         self.name, self._handles = thing.name, Handles.of(cell, thing, sigma)
-        self._held = None
-        pressed = event.type == "LEFTMOUSE" and event.value == "PRESS"
-        if pressed:
-            self._held = self._pressed_on(context, event)
-            if self._held is None:
-                # a tool's click beside all picks chooses another object, as ever
-                return {"CANCELLED", "PASS_THROUGH"}
+        self._held = self._pressed_on(context, event) if pressed else None
+        if pressed and self._held is None:
+            return PASSED_ON
         return self.begin(context, event)
 
     def handle(self, context, area, event):

@@ -11,6 +11,7 @@ from window_driver import (
     PAUSE,
     click,
     drag,
+    event,
     found,
     handlers,
     in_view,
@@ -39,7 +40,22 @@ def key(name, pixel):
 
 
 def active(name):
+    for ob in bpy.context.scene.objects:
+        ob.select_set(ob.name == name)
     bpy.context.view_layer.objects.active = bpy.context.scene.objects[name]
+
+
+def scrolled_down():
+    """The sidebar at its end, where the active object is."""
+    _, area, _ = view()
+    sidebar = next(region for region in area.regions if region.type == "UI")
+    x, y = sidebar.x + sidebar.width // 2, sidebar.y + sidebar.height // 2
+    event("MOUSEMOVE", "NOTHING", x, y)
+    yield PAUSE
+    for _ in range(30):
+        press("WHEELDOWNMOUSE", x, y)
+        yield 0.03
+    yield from settle()
 
 
 def worked():
@@ -128,11 +144,7 @@ def steps():
     yield from worked()
     active("box")
     save("coloured")
-    # Ctrl-click on a panel's head closes the others
-    view()[0].event_simulate(type="MOUSEMOVE", value="NOTHING", x=1150, y=364)
-    yield PAUSE
-    press("LEFTMOUSE", 1150, 364, ctrl=True)
-    yield from settle()
+    yield from scrolled_down()
     bpy.context.scene.monocell_object.size_0 = 0.2
     bpy.context.scene.monocell_object.size_2 = -0.1
     yield from shot("7_object")
