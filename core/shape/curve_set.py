@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array, Mask
 
@@ -73,7 +74,7 @@ class CurveSet:
         )
         return by
 
-    def chosen(self, rows: Array) -> CurveSet:
+    def chosen(self, rows: NDArray[np.intp]) -> CurveSet:
         """The curves at indices `rows` (K,), in that order."""
         return CurveSet(
             tuple(self.names[int(i)] for i in rows),

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far off a rough solid may be: every direction moves its outline about as far."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import Array
+from ..camera import Camera
+from ..modelling.solid import Solid
+from .hypotheses import hull_points
+
+# share of a size by which it may be wrong, and a turn in radians, 1 sigma
+SIZE_SHARE, TURN = 0.12, 0.25
+# an outline may move by this share of the reach, and of its extent
+REACH_SHARE, EXTENT_SHARE = 0.75, 0.06
+STEP = 1e-5
+
+
+def prior_root(solid: Solid, basis: Array, camera: Camera, reach_pixels: float) -> Array | None:
+    """A root (F, F) of the covariance over a basis (6 + P, F); None where the solid isn't imaged.
+
+    `basis @ root` are motions of one sigma each.
+    """
+    count = basis.shape[1]
+    hulls = hull_points(solid, np.vstack([np.zeros((1, len(basis))), STEP * basis.T]), camera)
+    if count == 0 or not np.isfinite(hulls).all():
+        return None
+    by = ((hulls[1:] - hulls[0]) / STEP).reshape(count, -1)
+    extent = float(np.linalg.norm(np.ptp(hulls[0], axis=0)))
+    sigma = float(np.hypot(REACH_SHARE * reach_pixels, EXTENT_SHARE * extent))
+    information = by @ by.T / (by.shape[1] / 2) / sigma**2
+    sizes = basis[6:] / (SIZE_SHARE * np.maximum(np.abs(solid.parameters), 1e-3))[:, None]
+    information += sizes.T @ sizes + basis[:3].T @ basis[:3] / TURN**2
+    root: Array = np.linalg.inv(np.linalg.cholesky(information)).T
+    return root
