@@ -124,9 +124,14 @@ def show_objects(scene: Any, cell: Cell, names: Collection[str] | None = None) -
         ob = build_object(thing, collection)
         if is_textured(thing):
             try:
-                paint(ob.data, thing, cell.folder)
+                made = paint(ob.data, thing, cell.folder)
             except PictureError as error:
                 told.append(f"{thing.name}: {error}")
+                continue
+            # a .blend that is sent elsewhere still has them
+            for image in made:
+                if isinstance(image, bpy.types.Image):
+                    image.pack()
     return tuple(told)
 
 

@@ -67,7 +67,7 @@ def active_reference(scene: Any, cell: Cell, kind: str) -> Reference:
     """
     reference = cell.references[scene.monocell_cell.reference_index]
     if isinstance(reference, PendingReference):
-        raise InvalidValue(f"{reference.name} has no place yet: press Solve All Picks first")
+        raise InvalidValue(f"{reference.name} has no place yet: press Solve All first")
     if isinstance(reference, ReferenceLine) and kind != "sphere":
         raise InvalidValue(f"{reference.name} is a line; choose a plane to stand things on")
     return reference

@@ -83,7 +83,9 @@ class ModelPanel(CellPanel, bpy.types.Panel):
                 "object_index",
                 rows=3,
             )
-        layout.operator(SolveAgain.bl_idname, icon="FILE_REFRESH")
+        row = layout.row(align=True)
+        row.operator(SolveAgain.bl_idname, text="Solve All", icon="FILE_REFRESH")
+        row.operator(SolveAgain.bl_idname, text="Together", icon="LINKED").joint = True
 
 
 def _draw_references(column):

@@ -73,6 +73,7 @@ def test_textures_lie_beside_the_document_and_on_the_mesh(addon, painted, tmp_pa
     assert "top" in box.appearance.textures
     assert (tmp_path / box.appearance.textures["top"].picture).is_file()
     assert len(scene.objects["box"].data.materials) == 1 + len(box.appearance.textures)
+    assert all(image.packed_file for image in addon.data.images if image.name.endswith("top.png"))
     # an edit keeps them on
     addon.ops.monocell.set_motion("EXEC_DEFAULT", True, name="box", kind="movable", mass=1.0)
     assert len(scene.objects["box"].data.materials) == 1 + len(box.appearance.textures)

@@ -143,6 +143,16 @@ def test_a_box_without_picks_keeps_its_base_when_its_height_is_typed(addon, benc
     assert box.world_from_object.translation[2] == pytest.approx(0.1, abs=1e-9)
 
 
+def test_what_is_solved_together_shares_what_is_known(addon, stacked, tmp_path):
+    addon.ops.monocell.set_size("EXEC_DEFAULT", True, name="can", size="height", metres=0.08)
+    alone = things(addon, tmp_path)
+    addon.ops.monocell.solve_again("EXEC_DEFAULT", True, joint=True)
+    together = things(addon, tmp_path)
+    # the can's known height tells how far away it is, and with it the box it stands on
+    assert together["box"].size_sigma()[2] < alone["box"].size_sigma()[2]
+    assert together["can"].known == {"height": 0.08}
+
+
 def test_a_relation_is_kept_and_taken_away_again(addon, stacked, tmp_path):
     add(addon, "cylinder", bench_cell.drum_picks(), name="drum", on="floor")
     addon.ops.monocell.add_relation(

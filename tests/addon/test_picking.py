@@ -272,6 +272,26 @@ def test_whatever_is_typed_is_a_size_or_none(text):
     assert all(value > 0 for value in known.values())
 
 
+class Key:
+    """A key press as Blender tells it."""
+
+    value = "PRESS"
+    ctrl = alt = oskey = shift = False
+
+    def __init__(self, name):
+        self.type = name
+
+
+def test_both_rows_of_digits_type_and_no_digit_turns_the_view():
+    from monocell.addon.on_picture import VIEW_EVENTS
+    from monocell.addon.typed_size import KEYS, typed_key
+
+    assert [typed_key(Key(f"NUMPAD_{digit}")) for digit in range(10)] == list("0123456789")
+    assert typed_key(Key("SEVEN")) == "7" and typed_key(Key("PERIOD")) == "."
+    assert typed_key(Key("LEFTMOUSE")) == ""
+    assert not VIEW_EVENTS & set(KEYS)
+
+
 def test_another_way_keeps_what_both_know():
     started = typed(session(CYLINDER, *bench_cell.drum_picks()["rim"]), "180")
     turned = started.replanned(LYING_CYLINDER)
