@@ -15,6 +15,7 @@ from .operators.add_sphere import AddSphere
 from .operators.add_tube import AddTube
 from .operators.add_upright_line import AddUprightLine
 from .operators.add_upright_plane import AddUprightPlane
+from .operators.align import Align
 from .operators.pick_reference import PickReference
 from .operators.remove_reference import RemoveReference
 from .operators.solve_again import SolveAgain
@@ -86,6 +87,7 @@ class ModelPanel(CellPanel, bpy.types.Panel):
         row = layout.row(align=True)
         row.operator(SolveAgain.bl_idname, text="Solve All", icon="FILE_REFRESH")
         row.operator(SolveAgain.bl_idname, text="Together", icon="LINKED").joint = True
+        row.operator(Align.bl_idname, text="Align All", icon="SNAP_EDGE").everything = True
 
 
 def _draw_references(column):

@@ -7,6 +7,7 @@ from .document import bare_cell, has_cell
 from .lengths import length, lengths
 from .model_changes import active_object
 from .operators.add_relation import KINDS, AddRelation
+from .operators.align import Align
 from .operators.move_pick import MovePick
 from .operators.remove_relation import RemoveRelation
 from .operators.set_motion import SetMotion
@@ -56,6 +57,7 @@ class ObjectPanel(CellPanel, bpy.types.Panel):
         row.operator(SetMotion.bl_idname, text=f"Motion: {thing.motion.kind}", icon="CON_PIVOT")
         if thing.picks:
             layout.operator(MovePick.bl_idname, text="Drag a Pick", icon="SNAP_MIDPOINT")
+        layout.operator(Align.bl_idname, icon="SNAP_EDGE").name = thing.name
         row = layout.row(align=True)
         row.operator(TakeColors.bl_idname, text="Colour", icon="EYEDROPPER")
         row.operator(TakeTextures.bl_idname, text="Texture", icon="TEXTURE")

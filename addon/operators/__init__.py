@@ -43,6 +43,7 @@ VERBS = (
     "stand_on",
     "set_motion",
     "solve_again",
+    "align",
     "take_colors",
     "take_textures",
     "export_gltf",
