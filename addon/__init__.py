@@ -33,7 +33,16 @@ def unregister():
 
 
 def _classes():
-    from . import drops, lists, operators, panel_camera, panel_model, panel_picture, panel_use
+    from . import (
+        drops,
+        lists,
+        operators,
+        panel_camera,
+        panel_model,
+        panel_object,
+        panel_picture,
+        panel_use,
+    )
     from .preferences import Preferences
 
     return (
@@ -44,6 +53,8 @@ def _classes():
         panel_picture.PicturePanel,
         panel_camera.CameraPanel,
         panel_camera.SightingsPanel,
+        panel_model.ReferenceMenu,
         panel_model.ModelPanel,
+        panel_object.ObjectPanel,
         panel_use.UsePanel,
     )

@@ -1,28 +1,48 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What every operator that adds a picked object shares: its inputs, and solving them."""
 
-from bpy.props import StringProperty
+from bpy.props import EnumProperty, StringProperty
 
 from .modelled import add_modelled
+from .pick_plans import WAYS
 from .picking import PicksOnPicture
 from .polls import NeedsPose
 from .refusals import refuses
 
 
+def way_property(kind, usual=None):
+    """The choice of how a kind is picked and held, the first way or the `usual` one offered."""
+    ways = [(name, label, meaning) for name, label, meaning, _ in WAYS[kind]]
+    default = usual or ways[0][0]
+    return EnumProperty(
+        name="Way",
+        description="How it is picked and held",
+        items=ways,
+        default=default,
+        options={"SKIP_SAVE"},
+    )
+
+
 class AddsPicked(PicksOnPicture, NeedsPose):
-    """An operator whose `plan` says what is picked; scripts give `picks` as JSON."""
+    """An operator of a `kind` with a property `way`; scripts give `picks` as JSON."""
 
     name: StringProperty(
         name="Name", description="Empty: the first free one", options={"SKIP_SAVE"}
     )
     on: StringProperty(
         name="On",
-        description="The reference it stands on; empty: the active one",
+        description="The reference it stands on, or a face of an object as crate.top; empty: the "
+        "active one",
         options={"SKIP_SAVE"},
     )
     picks: StringProperty(
         name="Picks",
         description='JSON, a list of pixels for each role: {"base": [[u, v], ...], "top": [...]}',
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    known: StringProperty(
+        name="Known sizes",
+        description='JSON, sizes that were measured, in metres: {"height": 0.12}',
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
@@ -31,7 +51,7 @@ class AddsPicked(PicksOnPicture, NeedsPose):
         """Solve the picks and build the object."""
         from ..core.picture.overlay import caption
 
-        modelled = add_modelled(context, self.plan.kind, self.name, self.on, self.picks)
+        modelled = add_modelled(context, self.kind, self)
         self.name = modelled.object.name
         self.report({"INFO"}, f"{self.name}: {caption(modelled.object)}")
         for warning in modelled.warnings:

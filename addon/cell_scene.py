@@ -14,9 +14,10 @@ import numpy as np
 from ..core.arrays import Array
 from ..core.camera import Camera
 from ..core.cell import Cell
-from ..core.errors import InvalidValue
+from ..core.errors import InvalidValue, PictureError
 from ..core.pose import Pose
 from .document import bare_cell, show_objects, write_scene
+from .preferences import settings
 
 # how far a click may be off, in pixels, before the Blender camera counts as moved
 SAME_PIXELS = 0.05
@@ -25,6 +26,7 @@ PROBES_CAMERA = np.array([[x, y, z] for x in (-0.4, 0, 0.4) for y in (-0.3, 0.3)
 # where a camera is put that has no pose yet: like someone standing at the cell's corner
 FIRST_DIRECTION = np.array([1.0, -1.3, 0.9])
 LEAST_DISTANCE = 1.5
+LENGTH_UNITS = {"mm": "MILLIMETERS", "cm": "CENTIMETERS", "m": "METERS", "in": "INCHES"}
 
 
 def open_scene(context: Any, cell: Cell, title: str) -> Any:
@@ -39,12 +41,21 @@ def open_scene(context: Any, cell: Cell, title: str) -> Any:
     picture = None if name is None else read_picture(cell.path_of(name), cell.camera.intrinsics)
     with _new_scene(title) as scene:
         write_scene(scene, cell)
+        _measure_in(scene, settings(context).unit)
         put_camera(scene)
         if picture is not None:
             show_picture(scene, name, picture)
-        show_objects(scene, cell)
+        for missing in show_objects(scene, cell):
+            raise PictureError(missing)
     context.window.scene = scene
     return scene
+
+
+def _measure_in(scene: Any, unit: str) -> None:
+    """Let Blender's own fields show the user's unit."""
+    measured = scene.unit_settings
+    measured.system = "IMPERIAL" if unit == "in" else "METRIC"
+    measured.length_unit = LENGTH_UNITS[unit]
 
 
 def shown_first(cell: Cell) -> str | None:

@@ -9,6 +9,7 @@ others in it call them by name.
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -19,6 +20,7 @@ import bpy
 from ..core.cell import Cell
 from ..core.document.cell_file import cell_from_document, document_from_cell
 from ..core.document.json_text import dumped
+from ..core.errors import PictureError
 from ..core.reference import PendingReference, ReferencePlane, kind_of
 from ..core.sighting import SphereSighting
 from .report import Report, dump_report, parse_report
@@ -106,13 +108,42 @@ def write_scene(scene: Any, cell: Cell, report: Report | None = None) -> None:
     _fill_references(stored, cell)
 
 
-def show_objects(scene: Any, cell: Cell) -> None:
-    """Build every object of `cell`, in place where it is there already."""
-    from ..scene.objects import build_object
+def show_objects(scene: Any, cell: Cell, names: Collection[str] | None = None) -> tuple[str, ...]:
+    """Build the objects of `cell`, or those of `names`, in place where they are there already.
 
-    collection = objects_collection(scene)
+    Returns a word on every object whose texture is missing: it has its colour alone.
+    """
+    from ..scene.objects import build_object, find_object
+    from ..scene.textures import is_textured, paint
+
+    collection, told = objects_collection(scene), []
     for thing in cell.objects:
-        build_object(thing, collection)
+        if names is not None and thing.name not in names:
+            continue
+        _leave_edit_mode(find_object(thing.name, collection))
+        ob = build_object(thing, collection)
+        if is_textured(thing):
+            try:
+                made = paint(ob.data, thing, cell.folder)
+            except PictureError as error:
+                told.append(f"{thing.name}: {error}")
+                continue
+            # a .blend that is sent elsewhere still has them
+            for image in made:
+                if isinstance(image, bpy.types.Image):
+                    image.pack()
+    return tuple(told)
+
+
+def _leave_edit_mode(ob: Any | None) -> None:
+    """Blender lets no mesh be rebuilt while it is edited."""
+    layer = bpy.context.view_layer
+    if ob is None or not ob.data.is_editmode or ob.name not in layer.objects:
+        return
+    # the mode is left by the active object, which another may have become meanwhile
+    before, layer.objects.active = layer.objects.active, ob
+    bpy.ops.object.mode_set(mode="OBJECT")
+    layer.objects.active = before
 
 
 def objects_collection(scene: Any) -> Any:
@@ -139,6 +170,7 @@ def _fill_sightings(stored: Any, cell: Cell, report: Report | None) -> None:
 
 
 def _fill_references(stored: Any, cell: Cell) -> None:
+    fresh = not len(stored.references)
     stored.references.clear()
     for reference in cell.references:
         row = stored.references.add()
@@ -150,8 +182,8 @@ def _fill_references(stored: Any, cell: Cell) -> None:
         plane = isinstance(reference, ReferencePlane)
         way = reference.normal if plane else reference.direction
         row.place = _where(reference.point) + (" ⟂ " if plane else " ∥ ") + _where(way)
-    planes = [i for i, r in enumerate(cell.references) if isinstance(r, ReferencePlane)]
-    if stored.reference_index not in planes:
+    if fresh or stored.reference_index >= len(cell.references):
+        planes = [i for i, r in enumerate(cell.references) if isinstance(r, ReferencePlane)]
         stored.reference_index = planes[0]
 
 

@@ -10,6 +10,8 @@ ENTRIES = (
     ("monocell.calibrate", "K", {"shift": True, "alt": True}),
     ("monocell.add_box", "B", {"shift": True, "alt": True}),
     ("monocell.add_cylinder", "Y", {"shift": True, "alt": True}),
+    ("monocell.pick_reference", "F", {"shift": True, "alt": True}),
+    ("monocell.move_pick", "M", {"shift": True, "alt": True}),
     ("monocell.solve_again", "U", {"shift": True, "alt": True}),
 )
 

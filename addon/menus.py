@@ -5,11 +5,13 @@ import bpy
 
 from .operators.export_gltf import ExportCell
 from .operators.open_cell import OpenCell
+from .operators.open_gltf import OpenGltf
 from .operators.save_cell import SaveCell
 
 
 def _import_entries(menu, context):
     menu.layout.operator(OpenCell.bl_idname, text="monocell document (.cell.json)")
+    menu.layout.operator(OpenGltf.bl_idname, text="monocell glTF (.glb)")
 
 
 def _export_entries(menu, context):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picks to an object in the scene: what both picking operators do once the picks are there."""
+"""Picks to an object in the scene: what all picking operators do once the picks are there."""
 
 from __future__ import annotations
 
@@ -7,48 +7,103 @@ import json
 from typing import Any
 
 from ..core.cell import Cell
-from ..core.errors import PickError
+from ..core.errors import InvalidValue, PickError
+from ..core.reference import PendingReference, Reference, ReferenceLine
 from .document import objects_collection, read_scene
 
 
-def add_modelled(context: Any, kind: str, name: str, on: str, picks: str) -> Any:
-    """Solve the picks (JSON) of a new object, build it, and select it. Returns the `Modelled`.
+def add_modelled(context: Any, kind: str, asked: Any) -> Any:
+    """Solve the picks of a new object, build it, and select it. Returns the `Modelled`.
 
-    An empty `name` gives the first free one, an empty `on` the list's active reference. Raises
-    PickError for picks that can't be the object, InvalidValue for a name that is taken.
+    `asked` has the texts `name` (empty: the first free one), `on` (empty: the list's active
+    reference), `picks` and `known` (JSON), and the `way` it is held. Raises PickError for picks
+    that can't be the object, InvalidValue for a name that is taken.
     """
     from ..core.modelling.solve import solve_sketch
     from ..core.sketch import Sketch
     from ..scene.objects import build_object
+    from .pick_plans import plan_of
 
     scene = context.scene
-    cell = read_scene(scene)
-    on = on or cell.references[scene.monocell_cell.reference_index].name
-    sketch = Sketch(name or free_name(cell, kind), kind, on, _parsed(picks, kind))
+    cell = standing_cell(scene)
+    plan = plan_of(kind, asked.way)
+    held = cell.reference(asked.on) if asked.on else active_reference(scene, cell, kind)
+    on, relations = plan.holding(held)
+    known = {**plan.known, **_parsed(asked.known, kind, "known")}
+    sketch = Sketch(
+        asked.name or free_name(cell, kind),
+        kind,
+        on,
+        _parsed(asked.picks, kind, "picks"),
+        known,
+        relations=relations,
+    )
     sigma = scene.monocell_inputs.pick_sigma_pixels
-    modelled = solve_sketch(cell.camera, sketch, cell.placed_references, cell.objects, sigma)
+    camera = cell.standing_camera()
+    modelled = solve_sketch(camera, sketch, cell.placed_references, cell.objects, sigma)
     # refuses a name that is taken, before anything is built
     cell.with_objects((*cell.objects, modelled.object))
-    ob = build_object(modelled.object, objects_collection(scene))
+    select_only(context, build_object(modelled.object, objects_collection(scene)))
+    return modelled
+
+
+def standing_cell(scene: Any) -> Cell:
+    """The cell, its references where the objects that they are made from stand now.
+
+    Raises what `resolve_references` raises.
+    """
+    from ..core.references.resolve import resolve_references
+
+    cell = read_scene(scene)
+    if not any(reference.source for reference in cell.references):
+        return cell
+    return resolve_references(cell, scene.monocell_inputs.pick_sigma_pixels)[0]
+
+
+def active_reference(scene: Any, cell: Cell, kind: str) -> Reference:
+    """The list's active reference, in its place.
+
+    Raises InvalidValue for one without a place, and for a line, which holds none but balls.
+    """
+    reference = cell.references[scene.monocell_cell.reference_index]
+    if isinstance(reference, PendingReference):
+        raise InvalidValue(f"{reference.name} has no place yet: press Solve All first")
+    if isinstance(reference, ReferenceLine) and kind != "sphere":
+        raise InvalidValue(f"{reference.name} is a line; choose a plane to stand things on")
+    return reference
+
+
+def select_only(context: Any, ob: Any) -> None:
+    """Make an object the active one, and the only one selected."""
     for other in context.selected_objects:
         other.select_set(False)
     context.view_layer.objects.active = ob
     ob.select_set(True)
-    return modelled
 
 
 def free_name(cell: Cell, kind: str) -> str:
     """The kind, with the first number that makes it new."""
-    taken = {thing.name for thing in cell.things}
+    taken = {thing.name for thing in cell.things} | {r.name for r in cell.references}
     names = (kind if i == 1 else f"{kind} {i}" for i in range(1, len(taken) + 2))
     return next(name for name in names if name not in taken)
 
 
-def _parsed(picks: str, kind: str) -> Any:
+def _parsed(text: str, kind: str, what: str) -> Any:
     try:
-        parsed = json.loads(picks or "{}")
+        parsed = json.loads(text or "{}")
     except json.JSONDecodeError as error:
-        raise PickError(f"picks: not JSON ({error.msg}); pick the {kind} in the picture") from None
+        raise PickError(f"{what}: not JSON ({error.msg}); pick the {kind} in the picture") from None
     if not isinstance(parsed, dict):
-        raise PickError(f"picks: expected a JSON object, got {picks:.40}")
+        raise PickError(f"{what}: expected a JSON object, got {text:.40}")
     return parsed
+
+
+def parsed_pixels(text: str) -> Any:
+    """Pixels [[u, v], ...] from JSON. Raises PickError for anything else."""
+    try:
+        pixels = json.loads(text or "[]")
+    except json.JSONDecodeError as error:
+        raise PickError(f"picks: not JSON ({error.msg}); click in the picture") from None
+    if not isinstance(pixels, list) or not all(isinstance(p, list) and len(p) == 2 for p in pixels):
+        raise PickError(f"picks: expected a list of pixels [u, v], got {text:.40}")
+    return pixels

@@ -24,7 +24,6 @@ VIEW_EVENTS = frozenset(
         "HOME",
         "NUMPAD_PLUS",
         "NUMPAD_MINUS",
-        "NUMPAD_0",
         "TIMER",
         "WINDOW_DEACTIVATE",
     }

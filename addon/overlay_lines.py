@@ -22,6 +22,7 @@ from ..core.picture.wireframe import finite_parts, wireframe
 from ..core.primitives import Primitive
 from ..core.sighting import PointSighting, SphereSighting
 from .drawing import GREY, HALO, WHITE, YELLOW, Color, Floats, ends_of
+from .pick_handles import view_pixels
 from .plane_grid import PlaneGrid
 from .report import Report
 from .settings import DEFAULTS, Settings
@@ -33,6 +34,8 @@ DOUBTFUL_SHARE = 2 / 3
 OUTLINE_POINTS = 120
 LONGEST_REASON = 40
 CROSS_PIXELS = 7.0
+# a pick's ring, pixels about it
+RING = 3.5 * np.stack([np.cos(np.linspace(0, 6.3, 17)), np.sin(np.linspace(0, 6.3, 17))], axis=1)
 ELSEWHERE = 0.55
 
 Look = tuple[Color, float]
@@ -141,7 +144,7 @@ def grid_strokes(grid: PlaneGrid, settings: Settings = DEFAULTS) -> Iterator[Str
 def object_strokes(
     thing: Primitive, camera: Camera, active: bool, settings: Settings = DEFAULTS
 ) -> Iterator[Stroke]:
-    """The wire-frame of an object, hidden edges faint."""
+    """The wire-frame of an object, hidden edges faint; of the active one the picks, as rings."""
     color = settings.active_color if active else settings.object_color
     pinhole = replace(camera, intrinsics=camera.intrinsics.undistorted())
     frame = wireframe(thing, pinhole)
@@ -149,6 +152,10 @@ def object_strokes(
     yield Stroke(hidden, (*color[:3], 0.5 * color[3]), 1.0)
     seen = tuple(line.pixels for line in frame if line.visible)
     yield from haloed(seen, color, settings.line_width + 0.2)
+    if active and thing.picks:
+        picks = view_pixels(camera, thing)
+        rings = tuple(pick + RING for pick in picks[np.isfinite(picks).all(axis=1)])
+        yield from haloed(rings, WHITE, 1.2)
 
 
 def looks_of(strokes: Iterable[Stroke]) -> Looks:

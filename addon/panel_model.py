@@ -4,18 +4,22 @@
 import bpy
 
 from .document import bare_cell, has_cell
-from .lengths import length, lengths
 from .lists import ObjectList, ReferenceList
 from .operators.add_box import AddBox
 from .operators.add_cone import AddCone
 from .operators.add_cylinder import AddCylinder
 from .operators.add_frustum import AddFrustum
+from .operators.add_parallel_plane import AddParallelPlane
 from .operators.add_prism import AddPrism
 from .operators.add_sphere import AddSphere
 from .operators.add_tube import AddTube
+from .operators.add_upright_line import AddUprightLine
+from .operators.add_upright_plane import AddUprightPlane
+from .operators.align import Align
+from .operators.pick_reference import PickReference
+from .operators.remove_reference import RemoveReference
 from .operators.solve_again import SolveAgain
-from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
-from .preferences import settings
+from .panel_parts import CellPanel, next_thing, standing
 from .steps import count_objects, model_step
 
 TOOLS = (
@@ -47,16 +51,18 @@ class ModelPanel(CellPanel, bpy.types.Panel):
             return
         stored = scene.monocell_cell
         layout.label(text="Stands on")
-        layout.template_list(
+        row = layout.row()
+        row.template_list(
             ReferenceList.bl_idname,
             "",
             stored,
             "references",
             stored,
             "reference_index",
-            rows=1,
-            maxrows=2,
+            rows=2,
+            maxrows=4,
         )
+        _draw_references(row.column(align=True))
         tools = layout.grid_flow(row_major=True, columns=3, even_columns=True, align=True)
         tools.scale_y = 1.2
         for tool, text, icon in TOOLS:
@@ -78,34 +84,28 @@ class ModelPanel(CellPanel, bpy.types.Panel):
                 "object_index",
                 rows=3,
             )
-            _draw_sizes(layout, context)
-        layout.operator(SolveAgain.bl_idname, icon="FILE_REFRESH")
+        row = layout.row(align=True)
+        row.operator(SolveAgain.bl_idname, text="Solve All", icon="FILE_REFRESH")
+        row.operator(SolveAgain.bl_idname, text="Together", icon="LINKED").joint = True
+        row.operator(Align.bl_idname, text="Align All", icon="SNAP_EDGE").everything = True
 
 
-def _draw_sizes(layout, context):
-    """Sizes and place of the active object, with 1 sigma where it is known."""
-    from ..core.errors import MonocellError
-    from ..scene.objects import is_modelled, read_object
-
-    ob = context.view_layer.objects.active
-    if ob is None or not is_modelled(ob):
-        return
-    try:
-        thing = read_object(ob)
-    except MonocellError as error:
-        paragraph(layout, context, str(error), "ERROR")
-        return
-    numbers(layout, _rows(thing, settings(context).unit))
+def _draw_references(column):
+    """Ways to a new reference beside their list."""
+    column.operator(PickReference.bl_idname, text="", icon="EYEDROPPER")
+    column.menu(ReferenceMenu.bl_idname, text="", icon="ADD")
+    column.operator(RemoveReference.bl_idname, text="", icon="REMOVE")
 
 
-def _rows(thing, unit):
-    sigmas, place = thing.size_sigma(), thing.position_sigma()
-    for i, (name, size) in enumerate(zip(thing.size_names, thing.sizes, strict=True)):
-        sigma = None if sigmas is None else float(sigmas[i])
-        yield name.replace("_", " ").capitalize(), length(float(size), unit, sigma)
-    if thing.kind == "prism":
-        yield "Corners", str(len(thing.polygon))
-    yield "Centre", lengths(thing.world_from_object.translation, unit)
-    if place is not None:
-        yield "± 1 sigma", lengths(place, unit)
-    yield "Stands on", thing.on or "nothing named"
+class ReferenceMenu(bpy.types.Menu):
+    """Ways to a new reference."""
+
+    bl_idname = "MONOCELL_MT_reference"
+    bl_label = "New Reference"
+
+    def draw(self, context):
+        """Blender's call."""
+        self.layout.operator(PickReference.bl_idname, text="Face, Edge or Axis", icon="EYEDROPPER")
+        self.layout.operator(AddUprightPlane.bl_idname, icon="AXIS_SIDE")
+        self.layout.operator(AddUprightLine.bl_idname, icon="EMPTY_SINGLE_ARROW")
+        self.layout.operator(AddParallelPlane.bl_idname, icon="MOD_ARRAY")

@@ -6,6 +6,8 @@ import bpy
 from .document import has_cell
 from .operators.export_gltf import ExportCell
 from .operators.save_cell import SaveCell
+from .operators.take_colors import TakeColors
+from .operators.take_textures import TakeTextures
 from .panel_parts import CellPanel, next_thing, standing
 from .steps import use_step
 
@@ -25,6 +27,13 @@ class UsePanel(CellPanel, bpy.types.Panel):
         layout, scene = self.layout, context.scene
         next_thing(layout, context, use_step(scene))
         if has_cell(scene):
+            row = layout.row(align=True)
+            row.operator(
+                TakeColors.bl_idname, text="All Colours", icon="EYEDROPPER"
+            ).everything = True
+            row.operator(
+                TakeTextures.bl_idname, text="All Textures", icon="TEXTURE"
+            ).everything = True
             column = layout.column(align=True)
             column.operator(ExportCell.bl_idname, text="Export glTF", icon="EXPORT")
             column.operator(SaveCell.bl_idname, icon="FILE_TICK")

@@ -5,7 +5,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from .drawing import ORANGE, WHITE, YELLOW, LineBatch, draw_crosses, draw_lines, draw_words
+from .drawing import (
+    ORANGE,
+    SKY,
+    WHITE,
+    YELLOW,
+    LineBatch,
+    draw_crosses,
+    draw_lines,
+    draw_ring,
+    draw_words,
+)
 from .pick_session import PickSession, Preview
 from .picture_frame import PictureFrame
 from .preferences import Settings
@@ -37,8 +47,41 @@ def draw_prompt(
     rows = [
         (session.prompt, WHITE),
         (preview.words, YELLOW),
+        (session.typed_words, SKY),
         (snapped, WHITE),
         (preview.complaint, ORANGE),
     ]
     size = (context.region.width, context.region.height)
     draw_words(rows, *cursor, size, context.preferences.system.ui_scale)
+
+
+def draw_handles(
+    context: Any, frame: PictureFrame, operator: Any, handles: Any, held: Any, aim: Any
+) -> None:
+    """The picks of an object as rings; while one is dragged, the object that it would make."""
+    from .pick_handles import view_pixels
+
+    scale, look = context.preferences.system.ui_scale, operator.settings
+    inner = frame.intrinsics
+    places = frame.region_points(view_pixels(handles.cell.camera, handles.thing))
+    for (handle, _), at in zip(handles.places.items(), places, strict=True):
+        if handle != held:
+            draw_ring(at, look.active_color, scale)
+    if held is None or aim is None:
+        rows = [("drag a pick", WHITE)]
+        draw_words(rows, *operator.cursor, (context.region.width, context.region.height), scale)
+        return
+    preview = handles.moved(held, aim.pixel)
+    lines = [frame.region_points(line.pixels) for line in preview.lines if line.visible]
+    draw_lines(lines, look.object_color, look.line_width, scale)
+    at = frame.region_points(inner.undistorted().project(inner.rays(aim.pixel[None])))
+    draw_ring(at[0], look.active_color, scale)
+    loupe_lines = [(line.pixels, look.object_color) for line in preview.lines]
+    snapped = operator.paint_aim(context, frame, loupe_lines)
+    rows = [
+        (f"{held[0]} {held[1] + 1}", WHITE),
+        (preview.words, YELLOW),
+        (snapped, WHITE),
+        (preview.complaint, ORANGE),
+    ]
+    draw_words(rows, *operator.cursor, (context.region.width, context.region.height), scale)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One object being picked: clicks and the cursor go in, lines and words to show come out."""
+"""One object being picked: clicks, typed sizes and the cursor go in, lines and words come out."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,9 +15,11 @@ from ..core.modelling.mapped_covariance import point_covariance_on_plane
 from ..core.modelling.reverse_mapping import points_on_plane
 from ..core.modelling.solve import solve_sketch
 from ..core.picture.wireframe import Polyline, wireframe
-from ..core.reference import ReferencePlane
+from ..core.primitives import KINDS, Primitive
+from ..core.reference import Reference, ReferencePlane
 from ..core.sketch import Sketch
-from .pick_plan import PickPlan, PickStep
+from .pick_plan import PickPlan, Stage, picks_of
+from .typed_size import metres_of, with_sign
 
 PREVIEW = "preview"
 
@@ -36,121 +39,240 @@ class Preview:
 
 @dataclass(frozen=True, eq=False)
 class PickSession:
-    """A plan, the camera and plane it is for, and the pixels (2,) clicked in each step so far.
+    """A plan, the camera and reference it is for, and what was clicked and typed so far.
 
-    `stage` is the step that the next click belongs to; `sigma_pixels` how far off clicks are.
+    `taken` are a role and a pixel (2,) of the picture as it came each; `kept` tells that the last
+    click left its stage open for more, `closed` the stages that were closed by hand. `things` are
+    what the reference may belong to. `typed` are texts by the name of the size, `sized` the size
+    that the keys go to, empty for the one that the mouse sets; `unit` is that of numbers without.
     """
 
     plan: PickPlan
     camera: Camera
-    plane: ReferencePlane
-    sigma_pixels: float = 1.0
-    pixels: tuple[tuple[Array, ...], ...] = ()
-    stage: int = 0
-
-    def __post_init__(self) -> None:
-        if not self.pixels:
-            object.__setattr__(self, "pixels", ((),) * len(self.plan.steps))
+    reference: Reference | None
+    things: tuple[Primitive, ...] = ()
+    taken: tuple[tuple[str, Array], ...] = ()
+    kept: bool = False
+    closed: tuple[str, ...] = ()
+    typed: Mapping[str, str] = field(default_factory=dict)
+    sized: str = ""
+    sigma: float = 1.0
+    unit: str = "mm"
 
     @property
-    def step(self) -> PickStep:
-        """The step that the next click belongs to."""
-        return self.plan.steps[self.stage]
+    def stage(self) -> Stage | None:
+        """What the next click is for; None when all that is needed has been clicked."""
+        if self.kept and self.taken:
+            last = self.plan.stage_of(self.taken[-1][0])
+            if last is not None and self._count(last) < last.most:
+                return last
+        return next((stage for stage in self.plan.stages if self._wanted(stage)), None)
 
     @property
     def complete(self) -> bool:
-        """Whether all clicks that are needed have been made."""
-        steps = zip(self.plan.steps, self.pixels, strict=True)
-        return all(len(clicked) >= step.least for step, clicked in steps)
-
-    @property
-    def full(self) -> bool:
-        """Whether nothing more can be clicked."""
-        return self.complete and len(self.pixels[self.stage]) == self.step.most
-
-    @property
-    def open(self) -> bool:
-        """Whether the step takes any number of clicks and has enough: Enter goes on to the next."""
-        enough = len(self.pixels[self.stage]) >= self.step.least
-        return enough and self.stage + 1 < len(self.plan.steps)
+        """Whether all that is needed has been clicked or typed."""
+        return self.stage is None
 
     @property
     def prompt(self) -> str:
         """What the next click is for."""
-        return self.step.prompt(len(self.pixels[self.stage]))
+        stage = self.stage
+        if stage is None:
+            return "click or Enter: done"
+        count = self._count(stage)
+        return stage.prompts[count] if count < len(stage.prompts) else stage.more
 
-    def picked(self, pixel: Array) -> PickSession:
-        """With one click more; a step that has all it can take gives way to the next."""
-        clicked = (*self.pixels[self.stage], pixel)
-        pixels = (*self.pixels[: self.stage], clicked, *self.pixels[self.stage + 1 :])
-        after = replace(self, pixels=pixels)
-        return after.advanced() if after.open and len(clicked) == self.step.most else after
+    @property
+    def known(self) -> dict[str, float]:
+        """The sizes that were typed, metres, and those that the plan knows."""
+        values = {name: metres_of(text, self.unit) for name, text in self.typed.items()}
+        typed = {name: value for name, value in values.items() if value is not None}
+        return {**self.plan.known, **typed}
 
-    def advanced(self) -> PickSession:
-        """At the next step."""
-        return replace(self, stage=self.stage + 1)
+    @property
+    def size_now(self) -> str:
+        """The size that keys go to."""
+        if self.sized:
+            return self.sized
+        names = self.sizes
+        stage = self.stage
+        if stage is None or not stage.sets:
+            return names[-1] if stage is None else names[0]
+        return stage.sets[min(max(self._count(stage) - 1, 0), len(stage.sets) - 1)]
+
+    @property
+    def sizes(self) -> tuple[str, ...]:
+        """The sizes that can be typed."""
+        return tuple(n for n in KINDS[self.plan.kind].size_names if n not in self.plan.known)
+
+    @property
+    def typed_words(self) -> str:
+        """What was typed, with a mark where the next key goes; empty before anything was."""
+        shown = []
+        for name in self.sizes:
+            text = self.typed.get(name, "")
+            if text or name == self.sized:
+                unit = "" if text.endswith(("m", "c")) else f" {self.unit}"
+                mark = "|" if name == self.size_now else ""
+                shown.append(f"{name.replace('_', ' ')} = {text}{mark}{unit}")
+        return "   ".join(shown)
+
+    def picked(self, pixel: Array, *, more: bool = False) -> PickSession:
+        """With one click more; with `more` its stage stays open for another."""
+        role = (self.stage or self.plan.stages[-1]).role
+        return replace(self, taken=(*self.taken, (role, pixel)), kept=more, sized="")
 
     def taken_back(self) -> PickSession:
         """Without the last click."""
-        stages = [i for i, clicked in enumerate(self.pixels) if clicked]
-        if not stages:
+        if not self.taken:
             return self
-        last = stages[-1]
-        pixels = (*self.pixels[:last], self.pixels[last][:-1], *self.pixels[last + 1 :])
-        return replace(self, pixels=pixels, stage=last)
+        role = self.taken[-1][0]
+        closed = tuple(name for name in self.closed if name != role)
+        return replace(self, taken=self.taken[:-1], kept=False, closed=closed)
+
+    def closes(self, pixel: Array | None, reach: float) -> bool:
+        """Whether a stage that takes any number ends here: at its first pick, or by Enter (None).
+
+        `reach` in pixels.
+        """
+        stage = self.stage
+        if stage is None or not stage.closing or self._count(stage) < len(stage.prompts):
+            return False
+        if pixel is None:
+            return True
+        first = next(taken for role, taken in self.taken if role == stage.role)
+        return float(np.linalg.norm(first - pixel)) <= reach
+
+    def with_closed(self) -> PickSession:
+        """With the stage of now closed."""
+        stage = self.stage
+        return self if stage is None else replace(self, closed=(*self.closed, stage.role))
+
+    def with_key(self, sign: str) -> PickSession:
+        """With a sign typed at the end of the size of now."""
+        name = self.size_now
+        text = with_sign(self.typed.get(name, ""), sign)
+        return replace(self, typed={**self.typed, name: text}, sized=name) if text else self
+
+    def without_key(self) -> PickSession:
+        """Without the last typed sign."""
+        name = self.sized
+        text = self.typed.get(name, "")[:-1]
+        rest = {key: value for key, value in self.typed.items() if key != name}
+        return replace(
+            self, typed={**rest, name: text} if text else rest, sized=name if text else ""
+        )
+
+    def next_size(self) -> PickSession:
+        """With the keys going to the next size, going round."""
+        names = self.sizes
+        return replace(self, sized=names[(names.index(self.size_now) + 1) % len(names)])
+
+    def replanned(self, plan: PickPlan) -> PickSession:
+        """Picked another way: what both ways know stays."""
+        taken = tuple(pick for pick in self.taken if plan.stage_of(pick[0]) is not None)
+        typed = {n: t for n, t in self.typed.items() if n not in plan.known}
+        return replace(self, plan=plan, taken=taken, typed=typed, sized="", kept=False)
 
     def view_pixels(self) -> Array:
         """The clicks (N, 2) in the undistorted view."""
-        clicked = [pixel for pixels in self.pixels for pixel in pixels]
-        return self._undistorted(np.array(clicked).reshape(-1, 2))
+        return self._undistorted(np.array([pixel for _, pixel in self.taken]).reshape(-1, 2))
 
     def picks(self) -> dict[str, list[object]]:
         """The document's picks."""
-        return self.plan.picks(self.camera, self.plane, self.pixels)
+        return picks_of(self.plan, self.camera, self.reference, self.taken)
+
+    def solved(self) -> Primitive:
+        """The object as picked and typed so far. Raises PickError where that is too little."""
+        on, relations = self.plan.holding(self.reference)
+        sketch = Sketch(PREVIEW, self.plan.kind, on, self.picks(), self.known, relations=relations)
+        return self._solve(sketch)
 
     def preview(self, cursor: Array | None) -> Preview:
         """The object as it would be with a click at the cursor (2,), a pixel of the picture."""
         if cursor is None:
             return Preview((), "outside the picture", "")
-        after = self.picked(cursor)
+        if self.complete:
+            return self._told(self, "")
+        after = self.picked(cursor, more=self.kept)
         try:
-            place = self.place(cursor) if self.step.on_reference else ""
-            if not after._solvable():
-                return Preview(after._chain(), place, "")
-            return after._solved(place)
+            place = self._place(cursor)
         except MonocellError as error:
             return Preview(after._chain(), "", _plain(error))
+        return self._told(after, place)
+
+    def _told(self, after: PickSession, place: str) -> Preview:
+        from ..core.picture.overlay import caption
+
+        first = after.plan.stages[0]
+        if after._count(first) < len(first.prompts):
+            return Preview(after._chain(), place, "")
+        stage = after.stage
+        if stage is not None and (stage == first or not after._count(stage)):
+            # too little is there yet for more than the first stage
+            return after._flat(place, "")
+        try:
+            thing = after.solved()
+            return Preview(after._lines(thing), place or caption(thing), "")
+        except MonocellError as error:
+            # while picks are still missing, what they can't tell yet is no complaint
+            return after._flat(place, _plain(error) if after.complete else "")
+
+    def _flat(self, place: str, complaint: str) -> Preview:
+        """What the first stage says alone; its refusal counts where nothing else is refused."""
+        if self.plan.flat is None:
+            return Preview(self._chain(), place, complaint)
+        kind, known = self.plan.flat
+        first = self.plan.stages[0].role
+        picks = {first: [pixel.tolist() for role, pixel in self.taken if role == first]}
+        on, relations = self.plan.holding(self.reference)
+        try:
+            thing = self._solve(Sketch(PREVIEW, kind, on, picks, known, relations=relations))
+        except MonocellError as error:
+            return Preview(self._chain(), place, complaint or _plain(error))
+        return Preview(self._lines(thing), place, complaint)
+
+    def _solve(self, sketch: Sketch) -> Primitive:
+        references = [] if self.reference is None else [self.reference]
+        modelled = solve_sketch(self.camera, sketch, references, self.things, self.sigma)
+        return modelled.object
+
+    def _count(self, stage: Stage) -> int:
+        return sum(role == stage.role for role, _ in self.taken)
+
+    def _wanted(self, stage: Stage) -> bool:
+        count = self._count(stage)
+        if stage.closing and stage.role not in self.closed:
+            return True
+        told = bool(stage.sets) and stage != self.plan.stages[0]
+        if told and all(name in self.known for name in stage.sets):
+            return False
+        return count < len(stage.prompts)
+
+    def _place(self, pixel: Array) -> str:
+        """Where a click would hit the reference, in metres, and how surely; else nothing."""
+        stage = self.stage
+        on_it = stage is not None and stage.role in ("base", "rim") and self.plan.held == "stands"
+        return self.place(pixel) if on_it else ""
 
     def place(self, pixel: Array) -> str:
         """Where a pixel (2,) hits the reference, in metres, and how surely."""
+        if not isinstance(self.reference, ReferencePlane):
+            return ""
         # adding nought turns -0.000 into 0.000
-        x, y, z = np.round(points_on_plane(self.camera, self.plane, pixel[None])[0], 3) + 0.0
+        x, y, z = np.round(points_on_plane(self.camera, self.reference, pixel[None])[0], 3) + 0.0
         covariance = point_covariance_on_plane(
-            self.camera, self.plane, pixel[None], self.sigma_pixels
+            self.camera, self.reference, pixel[None], self.sigma
         )[0]
         worst = 1e3 * float(np.sqrt(max(np.linalg.eigvalsh(covariance)[-1], 0.0)))
         return f"x {x:.3f}   y {y:.3f}   z {z:.3f} m   ± {worst:.{1 if worst < 100 else 0}f} mm"
 
-    def _solvable(self) -> bool:
-        """Whether the foot is there, and sizes stand in for what is not."""
-        steps = list(zip(self.plan.steps, self.pixels, strict=True))
-        foot = all(len(clicked) >= step.least for step, clicked in steps if step.on_reference)
-        begun = any(len(clicked) for step, clicked in steps if not step.on_reference)
-        return self.complete or (foot and not begun and bool(self.plan.flat))
-
-    def _solved(self, place: str) -> Preview:
-        from ..core.picture.overlay import caption
-
-        known = {} if self.complete else self.plan.flat
-        sketch = Sketch(PREVIEW, self.plan.kind, self.plane.name, self.picks(), known)
-        thing = solve_sketch(self.camera, sketch, [self.plane]).object
-        lines = wireframe(thing, self._pinhole_camera())
-        return Preview(lines, caption(thing) if self.complete else place, "")
+    def _lines(self, thing: Primitive) -> tuple[Polyline, ...]:
+        return wireframe(thing, self._pinhole_camera())
 
     def _chain(self) -> tuple[Polyline, ...]:
-        """Lines from click to click, a part of the object each."""
-        parts = [self._undistorted(np.array(p).reshape(-1, 2)) for p in self.pixels]
-        return tuple(Polyline(part, True) for part in parts if len(part) > 1)
+        pixels = self.view_pixels()
+        return (Polyline(pixels, True),) if len(pixels) > 1 else ()
 
     def _pinhole_camera(self) -> Camera:
         return replace(self.camera, intrinsics=self.camera.intrinsics.undistorted())

@@ -62,7 +62,7 @@ def model_step(scene: Any) -> Step:
         return Step("waiting", "Calibrate first: a picture has no scale without it.")
     if cell.sketches:
         count = len(cell.sketches)
-        return Step("next", f"{count} picked in the document: press Solve All Picks.")
+        return Step("next", f"{count} picked in the document: press Solve All.")
     if not count_objects(scene):
         return Step("next", "Add an object, then click on the picture.")
     return Step("done")

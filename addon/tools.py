@@ -1,51 +1,57 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The toolbar: a table of kinds in, a tool for each out, whose first click is the first pick."""
+"""The toolbar's tools: a table in, one tool for each solid, for references and for picks out."""
 
 import bpy
 
-ICONS = "ops.mesh.primitive_{}_add_gizmo"
-# verb, name, icon
+# verb, what the toolbar calls it, what it does, and one of Blender's own icons
 TOOLS = (
-    ("add_box", "Picked Box", "cube"),
-    ("add_cylinder", "Picked Cylinder", "cylinder"),
-    ("add_sphere", "Picked Sphere", "sphere"),
-    ("add_prism", "Picked Prism", "grid"),
-    ("add_cone", "Picked Cone", "cone"),
-    ("add_frustum", "Picked Frustum", "cone"),
-    ("add_tube", "Picked Tube", "torus"),
+    ("add_box", "Box", "Pick a box on the picture", "primitive_cube_add_gizmo"),
+    ("add_cylinder", "Cylinder", "Pick a cylinder", "primitive_cylinder_add_gizmo"),
+    ("add_sphere", "Sphere", "Pick a ball by its outline", "primitive_sphere_add_gizmo"),
+    ("add_cone", "Cone", "Pick a cone, or with V a frustum", "primitive_cone_add_gizmo"),
+    ("add_tube", "Tube", "Pick a tube", "primitive_torus_add_gizmo"),
+    ("add_prism", "Prism", "Pick a prism by its corners", "primitive_grid_add_gizmo"),
 )
+REFERENCE = ("pick_reference", "Reference", "Click what things stand on")
+PICKS = ("move_pick", "Move Picks", "Drag the picks of the active object")
 
 
-def register():
-    """Put the tools below Blender's own, as one group."""
-    classes = [_tool(*row) for row in TOOLS]
-    for i, cls in enumerate(classes):
-        after = {classes[0].bl_idname} if i else None
-        bpy.utils.register_tool(cls, after=after, separator=not i, group=not i)
-    bpy.types.WindowManager.monocell_tools = classes
-
-
-def unregister():
-    """Take them away again."""
-    for cls in reversed(bpy.types.WindowManager.monocell_tools):
-        bpy.utils.unregister_tool(cls)
-    del bpy.types.WindowManager.monocell_tools
-
-
-def _tool(verb, name, icon):
-    """Blender wants a class a tool; all are alike but for their verb."""
+def _tool(verb, label, meaning, icon):
     return type(
         f"MONOCELL_TOOL_{verb}",
         (bpy.types.WorkSpaceTool,),
         {
+            "__module__": __name__,
             "bl_space_type": "VIEW_3D",
             "bl_context_mode": "OBJECT",
             "bl_idname": f"monocell.tool_{verb}",
-            "bl_label": name,
-            "bl_description": f"{name}: click on the picture; the status bar says what is next",
-            "bl_icon": ICONS.format(icon),
-            "bl_cursor": "CROSSHAIR",
+            "bl_label": f"Cell: {label}",
+            "bl_description": f"{meaning}. Look through the cell's camera first",
+            "bl_icon": icon,
             "bl_widget": None,
             "bl_keymap": ((f"monocell.{verb}", {"type": "LEFTMOUSE", "value": "PRESS"}, None),),
         },
     )
+
+
+SOLIDS = tuple(_tool(verb, label, told, f"ops.mesh.{icon}") for verb, label, told, icon in TOOLS)
+REFERENCE_TOOL = _tool(*REFERENCE, "ops.generic.cursor")
+PICKS_TOOL = _tool(*PICKS, "ops.generic.select")
+
+
+def register():
+    """Put them at the end of the toolbar, the solids in one group."""
+    first, *more = SOLIDS
+    bpy.utils.register_tool(first, separator=True, group=True)
+    before = first
+    for tool in more:
+        bpy.utils.register_tool(tool, after={before.bl_idname})
+        before = tool
+    bpy.utils.register_tool(REFERENCE_TOOL)
+    bpy.utils.register_tool(PICKS_TOOL)
+
+
+def unregister():
+    """Take them away again."""
+    for tool in (PICKS_TOOL, REFERENCE_TOOL, *reversed(SOLIDS)):
+        bpy.utils.unregister_tool(tool)

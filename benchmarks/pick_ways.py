@@ -56,9 +56,9 @@ def main() -> None:
     rows = []
     for way in WAYS:
         if args.only in way.name:
-            progress(way.name)
             outcomes = [_outcome(way, i, args.sigma) for i in range(args.objects)]
             rows.append(_row(way, outcomes))
+            progress("  ".join(rows[-1]))
             if args.show:
                 for i, o in enumerate(outcomes):
                     if o.verdict != "right":

@@ -20,11 +20,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+from monocell.core.align.result import Aligned
 from monocell.core.camera import Camera
 from monocell.core.cell import Cell
 from monocell.core.errors import MonocellError
 from monocell.core.modelling.solve import Modelled, model_cell
 from monocell.core.picture.overlay import draw_overlay
+from monocell.core.picture.pictures import Picture
 from monocell.core.pose import point_jacobian
 from monocell.core.primitives import Primitive
 from monocell.core.sketch import Sketch
@@ -42,7 +44,7 @@ BALL_SIGMA_PIXELS, BALLS = 0.07, 6
 HIDDEN = "hidden"
 
 # a modelled cell and its picture to the cell aligned, with what is doubtful of each object
-Align = Callable[[Cell, np.ndarray], tuple[Cell, dict[str, tuple[str, ...]]]]
+Align = Callable[[Cell, Picture], tuple[Cell, Aligned]]
 Scored = Callable[[TabletopPlan, Camera], list[ThingScore]]
 
 
@@ -84,7 +86,7 @@ def ways(cache: Path) -> dict[str, Scored | None]:
 def edge_alignment() -> Align | None:
     """The alignment on the picture's edges, None where there is none."""
     try:
-        from monocell.core.align.cell import align_cell
+        from monocell.core.align.align_cell import align_cell
     except ImportError:
         return None
     return align_cell
@@ -117,12 +119,17 @@ def aligned(plan: TabletopPlan, camera: Camera, cache: Path, align: Align) -> li
     results = [_solved(camera, few or every) for few, every in both]
     things = tuple(one.object for one in results if isinstance(one, Modelled))
     picture = rendered_tabletop(plan, cache).picture()
-    cell, doubts = align(Cell(camera, references=(TABLE,), objects=things), picture)
-    moved = {thing.name: thing for thing in cell.objects}
+    _, found = align(Cell(camera, references=(TABLE,), objects=things), picture)
+    moved = found.objects
     return [
         _score(plan, truth, result)
         if truth.name not in moved
-        else score(plan.name, truth, moved[truth.name], doubts.get(truth.name, ()))
+        else score(
+            plan.name,
+            truth,
+            moved[truth.name].thing,
+            (*moved[truth.name].reasons, *moved[truth.name].warnings),
+        )
         for truth, result in zip(plan.things, results, strict=True)
     ]
 

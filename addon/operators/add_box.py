@@ -5,8 +5,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..adding import AddsPicked
-from ..pick_plan import BOX
+from ..adding import AddsPicked, way_property
 
 
 class AddBox(AddsPicked, bpy.types.Operator):
@@ -15,4 +14,5 @@ class AddBox(AddsPicked, bpy.types.Operator):
     bl_idname = "monocell.add_box"
     bl_label = "Add Box"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
-    plan = BOX
+    kind = "box"
+    way: way_property("box")

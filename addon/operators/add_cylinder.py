@@ -5,8 +5,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..adding import AddsPicked
-from ..pick_plan import CYLINDER
+from ..adding import AddsPicked, way_property
 
 
 class AddCylinder(AddsPicked, bpy.types.Operator):
@@ -14,5 +13,9 @@ class AddCylinder(AddsPicked, bpy.types.Operator):
 
     bl_idname = "monocell.add_cylinder"
     bl_label = "Add Cylinder"
+    bl_description = (
+        "Click three points of the base rim, then one of the top rim. V lays it on its side"
+    )
     bl_options: ClassVar = {"REGISTER", "UNDO"}
-    plan = CYLINDER
+    kind = "cylinder"
+    way: way_property("cylinder")

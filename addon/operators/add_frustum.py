@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Add a frustum: picks on the picture go in, a frustum on the active reference comes out."""
+"""Add a frustum: picks on the picture go in, a cone without its tip comes out."""
 
 from typing import ClassVar
 
 import bpy
 
-from ..adding import AddsPicked
-from ..pick_plan import FRUSTUM
+from ..adding import AddsPicked, way_property
 
 
 class AddFrustum(AddsPicked, bpy.types.Operator):
@@ -15,4 +14,5 @@ class AddFrustum(AddsPicked, bpy.types.Operator):
     bl_idname = "monocell.add_frustum"
     bl_label = "Add Frustum"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
-    plan = FRUSTUM
+    kind = "cone"
+    way: way_property("cone", "FRUSTUM")

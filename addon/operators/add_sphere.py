@@ -1,18 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Add a sphere: picks on the picture go in, a sphere on the active reference comes out."""
+"""Add a sphere by clicking on the picture: three points of its outline."""
 
 from typing import ClassVar
 
 import bpy
 
-from ..adding import AddsPicked
-from ..pick_plan import SPHERE
+from ..adding import AddsPicked, way_property
 
 
 class AddSphere(AddsPicked, bpy.types.Operator):
-    """Click three points or more of the outline of a ball that lies on the reference"""
+    """Click three points of the outline of a ball that rests on the reference"""
 
     bl_idname = "monocell.add_sphere"
     bl_label = "Add Sphere"
+    bl_description = (
+        "Click three points of the outline of a ball that rests on the reference. "
+        "V lets it float: type its radius"
+    )
     bl_options: ClassVar = {"REGISTER", "UNDO"}
-    plan = SPHERE
+    kind = "sphere"
+    way: way_property("sphere")

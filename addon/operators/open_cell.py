@@ -20,6 +20,12 @@ class OpenCell(bpy.types.Operator, ImportHelper):
 
     filename_ext = ".json"
     filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
+    # not remembered: a path that is there was dropped
+    filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE", "HIDDEN"})
+
+    def invoke(self, context, event):
+        """Open what was dropped at once; else let a file be chosen."""
+        return self.execute(context) if self.filepath else super().invoke(context, event)
 
     @refuses
     def execute(self, context):

@@ -4,6 +4,7 @@
 from typing import ClassVar
 
 import bpy
+from bpy.props import BoolProperty
 
 from ..document import read_scene, show_objects, stored_report, write_scene
 from ..polls import NeedsPose
@@ -21,16 +22,24 @@ class SolveAgain(NeedsPose, bpy.types.Operator):
     )
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
+    joint: BoolProperty(
+        name="Together",
+        description="Solve all objects as one problem, so that what is known of one improves the "
+        "others",
+        options={"SKIP_SAVE"},
+    )
+
     @refuses
     def execute(self, context):
         """Solve, then rebuild what changed."""
-        from ...core.modelling.solve import model_cell
+        from ...core.modelling.solve import model
 
         scene = context.scene
-        cell, results = model_cell(read_scene(scene), scene.monocell_inputs.pick_sigma_pixels)
-        write_scene(scene, cell, stored_report(scene))
-        show_objects(scene, cell)
-        self.report({"INFO"}, f"{len(results)} objects solved from their picks")
-        for warning in (w for result in results for w in result.warnings):
+        sigma = scene.monocell_inputs.pick_sigma_pixels
+        done = model(read_scene(scene), sigma, joint=self.joint)
+        write_scene(scene, done.cell, stored_report(scene))
+        told = [*done.warnings, *show_objects(scene, done.cell)]
+        self.report({"INFO"}, f"{len(done.results)} objects solved from their picks")
+        for warning in (*told, *(w for result in done.results for w in result.warnings)):
             self.report({"WARNING"}, warning)
         return {"FINISHED"}

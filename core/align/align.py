@@ -7,7 +7,7 @@ sizes are kept throughout; the last fit is the solver of `core/modelling`, with 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import cv2
@@ -31,6 +31,8 @@ from .search import Surroundings
 from .sight import PictureSight, filled
 from .verdict import moved_pixels, supported_share
 
+Watch = Callable[[str], None]
+
 # how far a rough outline may be off, pixels, and its sizes, as a share
 REACH_PIXELS = 8.0
 # what is in front covers so much more of the picture, and its edges reach so far
@@ -46,12 +48,14 @@ def align(
     references: Iterable[Reference] = (),
     names: Collection[str] | None = None,
     reach_pixels: float = REACH_PIXELS,
+    watch: Watch | None = None,
 ) -> Aligned:
     """Align the objects in `names` (None: all) that may be about `reach_pixels` off.
 
     The picture is as it came from the lens, sRGB-encoded, 8 or 16 bits. `references` are what the
     objects' `on` and relations name. An object that is not believed stays as it was given, and says
-    why. Covariances join the edges' scatter, `camera.covariance` and the errors of what holds an
+    why. `watch` is told the name of each object that is looked at, and may raise to end it.
+    Covariances join the edges' scatter, `camera.covariance` and the errors of what holds an
     object.
 
     Raises PictureError for a picture of another size, InvalidValue for a name or relation that
@@ -78,6 +82,8 @@ def align_in(
     away = [float(np.linalg.norm(camera.pose.apply(_place(thing)))) for thing in things]
     for i in nearest_first(before, away):
         if things[i].name in wanted:
+            if watch is not None:
+                watch(things[i].name)
             work.align(i, before[i])
     return work.finished(things)
 

@@ -8,7 +8,7 @@ from collections.abc import Collection
 from ..cell import Cell
 from ..errors import InvalidValue
 from ..picture.pictures import Picture
-from .align import REACH_PIXELS, align
+from .align import REACH_PIXELS, Watch, align
 from .result import Aligned
 
 
@@ -17,6 +17,7 @@ def align_cell(
     picture_bgr: Picture,
     names: Collection[str] | None = None,
     reach_pixels: float = REACH_PIXELS,
+    watch: Watch | None = None,
 ) -> tuple[Cell, Aligned]:
     """Align the objects in `names` (None: all that are solved) on the cell's own picture.
 
@@ -32,5 +33,6 @@ def align_cell(
         cell.placed_references,
         names,
         reach_pixels,
+        watch,
     )
     return cell.with_objects(aligned.things), aligned

@@ -75,6 +75,8 @@ def _read_pixel(entry: Any, label: str) -> Array:
 
 
 def _refuse_outside(picked: RolePicks, intrinsics: Intrinsics) -> None:
+    if not len(picked):
+        return
     size = np.array([intrinsics.width, intrinsics.height])
     margin = OUTSIDE_SHARE * size
     outside = (picked.pixels < -0.5 - margin) | (picked.pixels > size - 0.5 + margin)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from ..arrays import positive
 from ..camera import Camera
 from ..cell import Cell
-from ..errors import InvalidValue
+from ..errors import DegenerateReference, InvalidValue
 from ..primitives import Primitive
 from ..reference import Reference
 from ..references.resolve import resolve_references
@@ -17,7 +17,7 @@ from ..references.sources import FeatureOf
 from ..sketch import Sketch
 from .candidates import Chosen, choose
 from .following import followed
-from .holding import References, holds_of, relations_of
+from .holding import PLACING, References, holds_of, relations_of
 from .model_fit import ModelFit, fit_model
 from .modelled import Modelled, modelled
 from .pick_equations import pick_observer
@@ -198,12 +198,19 @@ class _Work:
         return not any(t.is_object and t.name in self.waiting for t in targets)
 
     def _loosened(self, sketch: Sketch, references: References) -> Sketch:
-        """The sketch without relations to what waits for it in turn."""
+        """The sketch without relations to what waits for it in turn; it must not stand on that."""
+        relations = relations_of(sketch)
         kept = tuple(
             relation
-            for relation in relations_of(sketch)
+            for relation in relations
             if self._stands(replace(sketch, on=None, relations=(relation,)), references)
         )
+        lost = [r for r in relations if r not in kept and r.kind in PLACING]
+        if lost:
+            raise DegenerateReference(
+                f"{sketch.name}: {lost[0].kind} {lost[0].to}, which is held by {sketch.name} in "
+                "turn; let one of them stand on something else"
+            )
         return replace(sketch, on=None, relations=kept)
 
 

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ...core.align.align_cell import align_cell
+from ...core.align.result import Aligned
 from ...core.ball.sphere import outline_pixels
 from ...core.calibration.calibrate import Calibration, calibrate_cell
 from ...core.camera import Camera
@@ -64,14 +66,36 @@ def hand_over(truth: Cell, seed: int) -> Path:
     return truth.folder / CELL
 
 
-def estimate(path: Path) -> tuple[Cell, Calibration, tuple[Modelled, ...]]:
-    """Calibrate and model what the document holds, and write it back."""
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """What the demo made of its pictures: the cell, and what each step says of itself."""
+
+    cell: Cell
+    calibration: Calibration
+    modelled: tuple[Modelled, ...]
+    aligned: Aligned
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """All doubts, in the order of the steps."""
+        picked = (warning for one in self.modelled for warning in one.warnings)
+        found = self.aligned.objects.items()
+        edges = (f"{name}: not aligned: {why}" for name, one in found for why in one.reasons)
+        return (*self.calibration.warnings, *picked, *edges)
+
+
+def estimate(path: Path) -> Estimate:
+    """Calibrate, model and align what the document holds, and write it back."""
     progress("calibrating from the pictures")
     cell, calibration = calibrate_cell(read_cell(path))
     progress("modelling from the picks")
-    solved, modelled = model_cell(cell, PICK_SIGMA_PIXELS)
+    picked, modelled = model_cell(cell, PICK_SIGMA_PIXELS)
+    progress("aligning on the picture's edges")
+    assert cell.picture is not None
+    picture = read_picture(cell.path_of(cell.picture), cell.camera.intrinsics)
+    solved, aligned = align_cell(picked, picture)
     write_cell(solved, path)
-    return solved, calibration, modelled
+    return Estimate(solved, calibration, modelled, aligned)
 
 
 def draw_overlays(cell: Cell, calibration: Calibration, out: Path) -> tuple[Path, Path]:

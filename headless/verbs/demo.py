@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...core.atomic import made_folder
-from ...core.calibration.calibrate import Calibration
 from ...core.cell import Cell
 from ...core.comparison import Comparison, compare_cells
 from ..blender import require_blender
@@ -17,6 +16,7 @@ from ..robot_job import seed_from
 from ..told import progress, warn
 
 if TYPE_CHECKING:
+    from ..demo.steps import Estimate
     from ..robot.planning import Plan
 
 
@@ -35,13 +35,13 @@ def run(args: argparse.Namespace) -> int:
 
     truth = steps.make_pictures(made_folder(args.out))
     document = steps.hand_over(truth, args.seed)
-    cell, calibration, modelled = steps.estimate(document)
+    estimate = steps.estimate(document)
+    cell, calibration = estimate.cell, estimate.calibration
     pictures = steps.draw_overlays(cell, calibration, args.out)
     environment, motion_told, plan, robot_picture = _use(cell, args)
     comparison = compare_cells(truth, cell)
-    warnings = [*calibration.warnings, *(w for m in modelled for w in m.warnings), *plan.warnings]
-    _tell(calibration, comparison, motion_told)
-    warn(warnings)
+    _tell(estimate, comparison, motion_told)
+    warn([*estimate.warnings, *plan.warnings])
     photographs = [args.out / s.picture for s in truth.sightings] + [args.out / steps.PICTURE]
     drawn = [*pictures, _side_view(cell, args), robot_picture]
     _name_files([*photographs, args.out / steps.TRUTH, document, environment, *drawn])
@@ -82,17 +82,19 @@ def _side_view(cell: Cell, args: argparse.Namespace) -> Path:
     return path
 
 
-def _tell(calibration: Calibration, comparison: Comparison, motion_told: str) -> None:
+def _tell(estimate: Estimate, comparison: Comparison, motion_told: str) -> None:
     from ..demo.steps import PICK_SIGMA_PIXELS
     from .compare import told
 
+    calibration, aligned = estimate.calibration, estimate.aligned.objects
     print(
         f"calibrated from {calibration.count_used} of {len(calibration.sightings)} ball sightings: "
         f"{calibration.verdict}, outlines {calibration.rms_pixels:.2f} px rms"
     )
     print(
         "objects modelled from simulated picks: the truth projected, plus a seeded error of "
-        f"{PICK_SIGMA_PIXELS:g} px sigma as a hand would make"
+        f"{PICK_SIGMA_PIXELS:g} px sigma as a hand would make; then aligned on the picture's edges "
+        f"({sum(one.believed for one in aligned.values())} of {len(aligned)} believed)"
     )
     print()
     print("estimate against truth, beside the 1 sigma that the estimate states")

@@ -4,22 +4,21 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from monocell.addon.pick_plan import (
+from monocell.addon.pick_plan import corner_below
+from monocell.addon.pick_plans import (
     BOX,
-    CONE,
     CYLINDER,
+    FLOATING_SPHERE,
     FRUSTUM,
+    LYING_CYLINDER,
     PRISM,
     SPHERE,
-    TUBE,
-    corner_below,
 )
 from monocell.addon.pick_session import PickSession
 from monocell.addon.picture_frame import PictureFrame
-from monocell.core import Cone, Pose, Tube
-from monocell.core.modelling.solve import solve_sketch
+from monocell.core import Cylinder, Pose
 from monocell.core.picture.undistortion import undistorted_picture
-from monocell.core.sketch import Sketch
+from monocell.core.primitives import Cone, Prism, Sphere
 
 CORNERS = bench_cell.CAMERA.project(bench_cell.BOX.corners_world())
 BASE = CORNERS[bench_cell.ROUND]
@@ -34,15 +33,28 @@ def session(plan, *pixels):
     return started
 
 
+def circle(thing, z, radius, angles):
+    """Pixels of points of a circle of a round solid, `angles` from the side that faces the eye."""
+    eye = bench_cell.POSE.inverse().translation - thing.world_from_object.translation
+    at = np.arctan2(eye[1], eye[0]) + np.array(angles)
+    points = np.stack([radius * np.cos(at), radius * np.sin(at), np.full(len(at), z)], axis=1)
+    return bench_cell.CAMERA.project(thing.world_from_object.apply(points))
+
+
+def typed(started, text):
+    for sign in text:
+        started = started.with_key(sign)
+    return started
+
+
 def sizes_in(words):
     return [float(word) for word in words.replace("×", " ").split() if word[0].isdigit()][::2]
 
 
 @pytest.mark.parametrize("corner", range(4))
 def test_a_top_pick_belongs_to_the_base_corner_below_it(corner):
-    corners = bench_cell.BOX.corners_world()[[0, 1, 3, 2]]
-    pixel = TOPS[corner] + np.array([3.0, 1.0])
-    assert corner_below(bench_cell.CAMERA, bench_cell.FLOOR, corners, pixel, -1) == corner
+    found = corner_below(bench_cell.CAMERA, bench_cell.FLOOR, BASE, TOPS[corner] + [3.0, 1.0], 4)
+    assert found == corner
 
 
 def test_the_box_that_is_shown_is_the_true_one():
@@ -91,7 +103,7 @@ def test_beside_the_picture_nothing_is_drawn():
 def test_taking_back_forgets_the_last_pick_only():
     picked = session(BOX, *BASE)
     assert picked.taken_back().picks() == session(BOX, *BASE[:2]).picks()
-    assert session(BOX).taken_back().pixels == ((), ())
+    assert session(BOX).taken_back().taken == ()
 
 
 def test_more_top_picks_are_all_kept():
@@ -103,71 +115,6 @@ def test_more_top_picks_are_all_kept():
     ]
     picks = bench_cell.drum_picks(tops=2)
     assert session(CYLINDER, *picks["rim"], *picks["top"]).picks() == picks
-
-
-def rim_pixels(thing, level, angles):
-    """Pixels of points of a rim, at angles from the side that faces the camera."""
-    eye = bench_cell.POSE.inverse().translation - thing.world_from_object.translation
-    turned = np.arctan2(eye[1], eye[0]) + np.array(angles)
-    radius = level[0]
-    points = np.stack([radius * np.cos(turned), radius * np.sin(turned)], 1)
-    points = np.column_stack([points, np.full(len(points), level[1])])
-    return bench_cell.CAMERA.project(thing.world_from_object.apply(points))
-
-
-def solved(plan, *pixels):
-    picked = session(plan, *pixels)
-    assert picked.complete
-    sketch = Sketch("x", plan.kind, "floor", picked.picks())
-    return solve_sketch(bench_cell.CAMERA, sketch, [bench_cell.FLOOR]).object
-
-
-UPRIGHT = Pose(np.eye(3), [0.36, 0.05, 0.08])
-
-
-def test_cone_frustum_and_tube_are_picked_as_their_plans_say():
-    foot = [-1.3, 0.0, 1.3]
-    cone = Cone("c", UPRIGHT, radius=0.06, top_radius=0.0, height=0.16)
-    apex = bench_cell.CAMERA.project(UPRIGHT.apply(np.array([[0, 0, 0.08]])))
-    found = solved(CONE, *rim_pixels(cone, (0.06, -0.08), foot), *apex)
-    assert found.sizes == pytest.approx([0.06, 0, 0.16], abs=1e-6)
-    top = rim_pixels(cone, (0.03, 0.08), foot)
-    found = solved(FRUSTUM, *rim_pixels(cone, (0.06, -0.08), foot), *top)
-    assert found.sizes == pytest.approx([0.06, 0.03, 0.16], abs=1e-5)
-    tube = Tube("t", UPRIGHT, radius=0.06, inner_radius=0.04, height=0.16)
-    pixels = [
-        *rim_pixels(tube, (0.06, -0.08), foot),
-        *rim_pixels(tube, (0.06, 0.08), [0.2]),
-        *rim_pixels(tube, (0.04, 0.08), [2.5]),
-    ]
-    assert solved(TUBE, *pixels).sizes == pytest.approx([0.06, 0.04, 0.16], abs=1e-5)
-
-
-def test_a_ball_on_the_reference_is_picked_by_its_outline():
-    from monocell.core.ball.sphere import outline_pixels
-
-    centre = bench_cell.POSE.apply(np.array([0.4, 0, 0.05]))
-    pixels = outline_pixels(bench_cell.INTRINSICS, centre, 0.05, 12)
-    found = solved(SPHERE, *pixels[[0, 4, 8]])
-    assert found.radius == pytest.approx(0.05, abs=1e-6)
-
-
-def test_a_prism_takes_any_number_of_corners_and_enter_ends_its_base():
-    floor = [[0.3, -0.1], [0.42, -0.1], [0.45, 0.02], [0.36, 0.08], [0.28, 0.0]]
-    base = np.column_stack([floor, np.zeros(5)])
-    pixels = bench_cell.CAMERA.project(base)
-    picking = session(PRISM, *pixels)
-    assert not picking.complete and picking.open and picking.step.role == "base"
-    assert "another base corner" in picking.prompt
-    raised = bench_cell.CAMERA.project(base + np.array([0, 0, 0.1]))
-    picking = picking.advanced().picked(raised[1])
-    assert picking.complete
-    assert [pick is None for pick in picking.picks()["top"]] == [True, False, True, True, True]
-    sketch = Sketch("x", "prism", "floor", picking.picks())
-    found = solve_sketch(bench_cell.CAMERA, sketch, [bench_cell.FLOOR]).object
-    assert found.height == pytest.approx(0.1, abs=1e-6)
-    # taking back leads over the step into the one before
-    assert picking.taken_back().taken_back().step.role == "base"
 
 
 FRAME = PictureFrame(-35.25, 12.5, 1004.75, 792.5, bench_cell.INTRINSICS)
@@ -193,3 +140,118 @@ def test_a_click_on_the_undistorted_view_is_a_pixel_of_the_picture_as_it_came():
         seen = np.array([(columns * shown).sum(), (rows * shown).sum()]) / shown.sum()
         x, y = FRAME.region_points(seen[None])[0]
         assert FRAME.picture_pixel(x, y) == pytest.approx([u, v], abs=0.15)
+
+
+CUP = Cone("cup", Pose(np.eye(3), [0.34, 0.2, 0.06]), radius=0.05, top_radius=0.08, height=0.12)
+BALL = Sphere("ball", Pose(np.eye(3), [0.3, -0.1, 0.07]), radius=0.07)
+LOG = Cylinder(
+    "log",
+    Pose.from_rotation_vector([1.5707963267948966, 0, 0], [0.35, 0, 0.06]),
+    radius=0.06,
+    height=0.3,
+)
+WEDGE = Prism(
+    "wedge",
+    Pose(np.eye(3), [0.35, 0, 0.05]),
+    polygon=[[-0.1, -0.05], [0.1, -0.05], [0, 0.1]],
+    height=0.1,
+)
+
+
+def outline_of(ball, count):
+    """Pixels of points of a ball's outline."""
+    eye = bench_cell.POSE.inverse().translation
+    towards = ball.world_from_object.translation - eye
+    away = np.linalg.norm(towards)
+    axis = towards / away
+    # the circle in which the cone of sight touches the ball
+    middle = eye + axis * (away - ball.radius**2 / away)
+    reach = ball.radius * np.sqrt(1 - (ball.radius / away) ** 2)
+    one = np.cross(axis, [0, 0, 1.0])
+    one /= np.linalg.norm(one)
+    angles = 2 * np.pi * np.arange(count) / count
+    ring = np.outer(np.cos(angles), one) + np.outer(np.sin(angles), np.cross(axis, one))
+    return bench_cell.CAMERA.project(middle + reach * ring)
+
+
+def test_a_frustum_is_its_two_rims():
+    rim = circle(CUP, -0.06, 0.05, [-1.2, 0.0, 1.2])
+    top = circle(CUP, 0.06, 0.08, [-2.0, 0.0, 2.0])
+    thing = session(FRUSTUM, *rim, *top).solved()
+    assert [thing.radius, thing.top_radius, thing.height] == pytest.approx([0.05, 0.08, 0.12])
+
+
+def test_a_resting_ball_gets_its_radius_from_the_floor():
+    started = session(SPHERE, *outline_of(BALL, 3))
+    assert started.complete
+    assert started.solved().radius == pytest.approx(0.07, abs=1e-6)
+
+
+def test_a_floating_ball_needs_its_radius_typed():
+    held = Sphere("held", Pose(np.eye(3), [0.3, 0.1, 0.35]), radius=0.05)
+    started = session(FLOATING_SPHERE, *outline_of(held, 3))
+    assert "radius" in started.preview(np.array([400.0, 300.0])).complaint
+    thing = typed(started, "50").solved()
+    assert thing.on is None and thing.radius == 0.05
+    assert thing.world_from_object.translation == pytest.approx([0.3, 0.1, 0.35], abs=1e-6)
+
+
+def test_a_lying_cylinder_keeps_that_it_lies():
+    near, far = -0.15, 0.15
+    if (
+        bench_cell.POSE.apply(LOG.world_from_object.apply([0, 0, 0.15]))[2]
+        < bench_cell.POSE.apply(LOG.world_from_object.apply([0, 0, -0.15]))[2]
+    ):
+        near, far = far, near
+    angles = np.array([0.3, 1.8, 3.4, 5.0])
+    points = lambda z, at: LOG.world_from_object.apply(  # noqa: E731
+        np.stack([0.06 * np.cos(at), 0.06 * np.sin(at), np.full(len(at), z)], axis=1)
+    )
+    rim = bench_cell.CAMERA.project(points(near, angles))
+    top = bench_cell.CAMERA.project(points(far, np.array([0.4, 1.2, 2.0])))
+    thing = session(LYING_CYLINDER, *rim, *top).solved()
+    assert [thing.radius, thing.height] == pytest.approx([0.06, 0.3], abs=1e-6)
+    assert [(r.kind, r.to) for r in thing.relations] == [("lies_on", "floor")]
+
+
+def prism_corners(level):
+    corners = np.column_stack([WEDGE.polygon, np.full(3, level)])
+    return bench_cell.CAMERA.project(WEDGE.world_from_object.apply(corners))
+
+
+def test_a_prism_is_closed_at_its_first_corner_or_by_enter():
+    started = session(PRISM, *prism_corners(-0.05))
+    assert not started.complete and started.stage.role == "base"
+    first = started.taken[0][1]
+    assert started.closes(first + 2, 5.0) and not started.closes(first + 9, 5.0)
+    assert started.closes(None, 0.0)
+    closed = started.with_closed()
+    assert closed.stage.role == "top"
+    thing = closed.picked(prism_corners(0.05)[1]).solved()
+    assert thing.height == pytest.approx(0.1, abs=1e-6)
+    assert closed.picked(prism_corners(0.05)[1]).picks()["top"][0] is None
+    assert not closed.taken_back().closed
+
+
+def test_two_corners_close_no_prism():
+    assert not session(PRISM, *prism_corners(-0.05)[:2]).closes(None, 0.0)
+
+
+def test_another_way_keeps_what_both_know():
+    started = typed(session(CYLINDER, *bench_cell.drum_picks()["rim"]), "180")
+    turned = started.replanned(LYING_CYLINDER)
+    assert [role for role, _ in turned.taken] == ["rim"] * 3
+    assert turned.known == {"height": 0.18}
+
+
+def test_with_shift_a_stage_takes_more_points():
+    picks = bench_cell.drum_picks()
+    started = session(CYLINDER, *picks["rim"][:2])
+    more = started.picked(np.array(picks["rim"][2]), more=True)
+    assert more.stage.role == "rim"
+    assert more.picked(np.array(picks["rim"][0])).stage.role == "top"
+
+
+def test_a_box_has_no_fifth_base_corner():
+    fourth = session(BOX, *BASE[:2]).picked(BASE[2], more=True).picked(CORNERS[2], more=True)
+    assert fourth.stage.role == "top"

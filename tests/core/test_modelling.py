@@ -18,7 +18,7 @@ from monocell.core import (
     Relation,
     Sketch,
 )
-from monocell.core.errors import InvalidValue, NoPose
+from monocell.core.errors import DegenerateReference, InvalidValue, NoPose, PickError
 from monocell.core.modelling.solve import model, model_cell, solve_sketch
 from monocell.core.reference import PendingReference
 from monocell.core.references.sources import FeatureOf
@@ -221,3 +221,22 @@ def test_what_nobody_picked_follows_what_holds_it():
     # what a person put above the floor stays where it was put
     assert now["typed"] is typed
     assert {thing.name: thing for thing in model(solved).cell.objects}["lamp"] is now["lamp"]
+
+
+@pytest.mark.parametrize("lid", [True, False])
+def test_two_that_stand_on_each_other_are_refused(lid):
+    cell, _, _ = stacked_cell(camera())
+    block, crate = cell.sketches
+    around = (replace(block, on="crate.top"), replace(crate, on="block.top"))
+    references = cell.references if lid else (FLOOR,)
+    with pytest.raises(DegenerateReference, match=r"break the circle|held by block in turn"):
+        model(replace(cell, references=references, sketches=around))
+
+
+def test_a_box_whose_foot_is_hidden_asks_for_one_of_its_corners():
+    cam = camera()
+    picks = box_picks(box_on(FLOOR), cam, 3, (0, 1, 2, 3)) | {"base": []}
+    with pytest.raises(PickError, match="block: no corner of its base is picked"):
+        solve_sketch(cam, Sketch("block", "box", "floor", picks), [FLOOR])
+    known = solve_sketch(cam, Sketch("block", "box", "floor", picks, {"size_x": 0.2}), [FLOOR])
+    np.testing.assert_allclose(known.object.sizes, [0.2, 0.1, 0.15], atol=1e-7)

@@ -175,7 +175,7 @@ REFUSED = {
         {**box_picks(block()), "base": [*box_picks(block())["base"], [1.0, 2.0]]},
         r"it: base\[4\] is a fifth corner",
     ),
-    "the top alone": (box_picks(block(), ()), "it: the picks do not determine"),
+    "the top alone": (box_picks(block(), ()), "it: no corner of its base is picked"),
     "crossing": (CROSSED, "it: the top corners cross; pick them in order round the top"),
     "top below base": (UPSIDE, r"it: the picks fit best with a size_z of -[\d.]+ mm"),
 }

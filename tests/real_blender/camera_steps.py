@@ -109,5 +109,11 @@ def steps():
     view()[1].tag_redraw()
     yield from shot("7_edited")
 
+    files = [{"name": "table.cell.json"}]
+    drop = bpy.ops.wm.drop_import_file
+    in_view(drop, "INVOKE_DEFAULT", directory=job["sample"], files=files)
+    yield from settle()
+    found["dropped"] = view()[0].scene.name
+
 
 run(steps)

@@ -30,6 +30,7 @@ def worked(window_blender, tmp_path_factory):
         "height": i.height,
         "window": [u - 60, v - 60, u + 60, v + 60],
         "point": point,
+        "sample": f"{SAMPLE}/",
         "point_at": pinhole.project(camera.pose.apply(np.array([point])))[0].tolist(),
     }
     folder = tmp_path_factory.mktemp("camera")
@@ -90,3 +91,7 @@ def test_a_clicked_point_is_a_pixel_of_the_picture_as_it_came(worked):
     # a screen pixel shows more than one of the picture
     assert np.abs(point.pixel - expected).max() < 1.5
     assert len(cell(worked, "cancelled").sightings) == len(cell(worked, "point").sightings)
+
+
+def test_a_document_that_is_dropped_opens_at_once(worked):
+    assert worked[1]["dropped"] == "table"

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from ...arrays import Array
@@ -111,6 +113,7 @@ def _from_any(camera: Camera, sketch: Sketch, picked: Picked, held: Held, sigma:
             f"{sketch.name}: nothing tells how large it is: a box that stands nowhere needs a "
             "known size"
         )
+    _refuse_one_end(sketch, picked, held, known)
     grazing = grazing_base(camera, picked, held)
     for role in ("base", "top"):
         refuse_crossing(picked[role])
@@ -133,6 +136,19 @@ def _from_any(camera: Camera, sketch: Sketch, picked: Picked, held: Held, sigma:
     _, turn, trials, cost = min(found, key=lambda f: f[0])
     plan = corner_plan("box", picked, turn, sigma)
     return Starts(things_of(sketch, rivals(trials, cost, sigma)), plan, grazing)
+
+
+def _refuse_one_end(sketch: Sketch, picked: Picked, held: Held, known: Mapping[int, float]) -> None:
+    """A top alone above the plane may be small and near to it, or large and far."""
+    stands = len(held.grips) == 1 and held.grips[0].flush in ("base", "top")
+    if not stands or held.others or known:
+        return
+    other = "top" if held.grips[0].flush == "base" else "base"
+    if len(picked[other]) and not len(picked[str(held.grips[0].flush)]):
+        raise PickError(
+            f"{sketch.name}: no corner of its {held.grips[0].flush} is picked, so that it may be "
+            f"small and near to {held.grips[0].name} or large and far; pick one, or give a size"
+        )
 
 
 def _refuse_negative(sketch: Sketch, trials: Trials) -> None:

@@ -83,7 +83,7 @@ def _standing(
     """From closed-form guesses in the plane that it stands on."""
     plane = plane_of(standing)
     on_base = standing.flush == "base"
-    rays = _standing_rays(camera, picked, plane, on_base)
+    rays = _standing_rays(camera, picked, plane, seen, on_base)
     shapes = _shapes(rays, seen, plane, known, on_base)
     if not len(shapes):
         return _nothing(held)
@@ -162,23 +162,18 @@ def _upright(trials: Trials, kind: str) -> Trials:
 
 
 def _standing_rays(
-    camera: Camera, picked: Picked, plane: ReferencePlane, on_base: bool
+    camera: Camera, picked: Picked, plane: ReferencePlane, seen: Seen, on_base: bool
 ) -> StandingRays:
-    near, far = ("rim", "top") if on_base else ("top", "rim")
+    near, far = ("rim", seen.top) if on_base else ("top", seen.rim)
     plane_from_world = plane.world_from_plane.inverse()
     points = points_on_plane(camera, plane, picked[near].pixels, picked[near].labels)
-
-    def rays(role: str) -> Array:
-        if role not in picked:
-            return np.zeros((0, 3))
-        return plane_from_world.rotate(camera.rays_world(picked[role].pixels)[1])
 
     return StandingRays(
         plane_from_world.apply(camera.centre_world),
         plane_from_world.apply(points)[:, :2],
-        rays(far),
-        rays("sides"),
-        rays("apex"),
+        plane_from_world.rotate(far),
+        plane_from_world.rotate(seen.sides),
+        plane_from_world.rotate(seen.points),
     )
 
 

@@ -21,8 +21,8 @@ DIFFERENCE = 1e-6
 FIRST_DAMPING = 1e-3
 # indices or a mask
 Rows = NDArray[np.intp] | Mask
-# a descent whose cost falls by less than this share in a step has shown where it ends
-SETTLED_SHARE = 1e-5
+# a descent whose cost falls by less than this share, and squared pixels, shows where it ends
+SETTLED_SHARE, SETTLED_GAIN = 1e-3, 1e-3
 # guesses this near to each other, in shares of their sizes, are one
 SAME_SHARE = 0.01
 
@@ -106,7 +106,7 @@ def descended(trials: Trials, residuals: Residuals, free: Mask, steps: int) -> T
         gained = np.where(better, cost - tried_cost, 0.0)
         trials = _merged(better, tried, trials)
         values = np.where(better[:, None], tried_values, values)
-        settled = better & (gained <= SETTLED_SHARE * cost + 1e-9)
+        settled = better & (gained <= SETTLED_SHARE * cost + SETTLED_GAIN)
         cost = np.where(better, tried_cost, cost)
         damping = np.where(better, damping * 0.1, damping * 10.0)
         if (settled | (damping > 1e6)).all():

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A plane at a typed distance from the active one, as the active reference."""
+
+from typing import ClassVar
+
+import bpy
+from bpy.props import FloatProperty, StringProperty
+
+from ..polls import NeedsPose
+from ..reference_adding import add_reference
+from ..refusals import refuses
+
+
+class AddParallelPlane(NeedsPose, bpy.types.Operator):
+    """Make a plane parallel to the active one, at a distance along its normal"""
+
+    bl_idname = "monocell.add_parallel_plane"
+    bl_label = "Parallel Plane"
+    bl_options: ClassVar = {"REGISTER", "UNDO"}
+
+    to: StringProperty(
+        name="To",
+        description="A plane, or a face as crate.top; empty: the active reference",
+        options={"SKIP_SAVE"},
+    )
+    distance: FloatProperty(
+        name="Distance",
+        description="Along the plane's normal, metres; below zero on its other side",
+        default=0.1,
+        unit="LENGTH",
+        precision=4,
+    )
+    name: StringProperty(
+        name="Name", description="Empty: the first free one", options={"SKIP_SAVE"}
+    )
+
+    def invoke(self, context, event):
+        """Ask for the distance."""
+        return context.window_manager.invoke_props_dialog(self)
+
+    @refuses
+    def execute(self, context):
+        """Add it."""
+        from ...core.references.sources import Parallel
+        from ..place_inputs import decimals
+
+        distance = float(decimals([self.distance])[0])
+        add_reference(self, context, "plane", self.to, lambda on: Parallel(on, distance))
+        return {"FINISHED"}

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Type a size of an object, or leave it to the picks again; what hangs on it follows."""
+
+from typing import ClassVar
+
+import bpy
+from bpy.props import BoolProperty, FloatProperty, StringProperty
+
+from ..model_changes import change_model, name_of
+from ..polls import NeedsPose
+from ..refusals import refuses
+
+
+class SetSize(NeedsPose, bpy.types.Operator):
+    """Hold a size of an object at what was measured, or free it"""
+
+    bl_idname = "monocell.set_size"
+    bl_label = "Set Size"
+    bl_options: ClassVar = {"REGISTER", "UNDO"}
+
+    name: StringProperty(name="Object", description="Empty: the active one", options={"SKIP_SAVE"})
+    size: StringProperty(name="Size", description="size_x, radius, height, ...")
+    known: BoolProperty(
+        name="Known",
+        description="Whether the size was measured and is held; otherwise the picks tell it",
+        default=True,
+        options={"SKIP_SAVE"},
+    )
+    metres: FloatProperty(name="Value", description="The size, metres", unit="LENGTH", precision=4)
+
+    @refuses
+    def execute(self, context):
+        """Solve again with it."""
+        from ..editing import with_size
+        from ..place_inputs import decimals
+
+        name = name_of(context, self.name)
+        value = float(decimals([self.metres])[0]) if self.known else None
+        edited = change_model(
+            context.scene, lambda cell, sigma: with_size(cell, name, self.size, value, sigma)
+        )
+        for warning in edited.warnings:
+            self.report({"WARNING"}, warning)
+        return {"FINISHED"}

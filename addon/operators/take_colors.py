@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Give objects the colour that the picture shows, in linear light."""
+
+from typing import ClassVar
+
+import bpy
+from bpy.props import BoolProperty
+
+from ..looks_taken import TakesLooks
+
+
+class TakeColors(TakesLooks, bpy.types.Operator):
+    """Give the active object the colour that the picture shows of it"""
+
+    bl_idname = "monocell.take_colors"
+    bl_label = "Colour from Picture"
+    bl_options: ClassVar = {"REGISTER", "UNDO"}
+    textured = False
+
+    everything: BoolProperty(
+        name="All", description="All objects, not the active one alone", options={"SKIP_SAVE"}
+    )

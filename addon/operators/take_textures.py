@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Give objects the picture's own pixels, face by face, as files beside the document."""
+
+from typing import ClassVar
+
+import bpy
+from bpy.props import BoolProperty
+
+from ..looks_taken import TakesLooks
+
+
+class TakeTextures(TakesLooks, bpy.types.Operator):
+    """Give the active object the picture's pixels on its faces, PNG files beside the cell"""
+
+    bl_idname = "monocell.take_textures"
+    bl_label = "Texture from Picture"
+    bl_options: ClassVar = {"REGISTER", "UNDO"}
+    textured = True
+
+    everything: BoolProperty(
+        name="All", description="All objects, not the active one alone", options={"SKIP_SAVE"}
+    )
