@@ -55,8 +55,7 @@ def align(
     The picture is as it came from the lens, sRGB-encoded, 8 or 16 bits. `references` are what the
     objects' `on` and relations name. An object that is not believed stays as it was given, and says
     why. `watch` is told the name of each object that is looked at, and may raise to end it.
-    Covariances join the edges' scatter, `camera.covariance` and the errors of what holds an
-    object.
+    Covariances join the edges' scatter, `camera.covariance` and the errors of what holds an object.
 
     Raises PictureError for a picture of another size, InvalidValue for a name or relation that
     means nothing or a reach that is none, NoPose without a camera pose.
@@ -64,7 +63,7 @@ def align(
     reach = positive(reach_pixels, "reach_pixels")
     check_size(picture_bgr, camera.intrinsics, "the picture")
     wanted = _wanted(things, names)
-    return align_in(PictureSight.of(picture_bgr), things, camera, references, wanted, reach)
+    return align_in(PictureSight.of(picture_bgr), things, camera, references, wanted, reach, watch)
 
 
 def align_in(
@@ -74,6 +73,7 @@ def align_in(
     references: Iterable[Reference],
     wanted: Collection[str],
     reach_pixels: float,
+    watch: Watch | None = None,
 ) -> Aligned:
     """`align` in a picture that has been looked at already."""
     known = {reference.name: reference for reference in references}
