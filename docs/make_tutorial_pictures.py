@@ -18,12 +18,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "tests" / "real_blender"))
-
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "real_blender"))
 import conftest
 from monocell.core.document.cell_file import read_cell
 
+ROOT = Path(__file__).resolve().parents[1]
 PICTURES = ROOT / "docs" / "pictures"
 SAMPLE = ROOT / "samples" / "01_table"
 WIDTH, LARGEST_BYTES = 900, 90_000
@@ -31,13 +30,13 @@ WIDTH, LARGEST_BYTES = 900, 90_000
 PARTS = {
     "start": (0, 0, 1600, 1000),
     "sample": (0, 0, 1600, 1000),
-    "calibrated": (400, 0, 1600, 960),
-    "box": (200, 330, 1100, 1000),
-    "cylinder": (200, 330, 1100, 1000),
-    "solved": (400, 0, 1600, 1000),
-    "face": (200, 330, 1100, 1000),
-    "aligned": (400, 0, 1600, 1000),
-    "side": (0, 0, 1600, 1000),
+    "calibrated": (260, 0, 1600, 960),
+    "box": (0, 230, 1250, 1000),
+    "cylinder": (230, 230, 1190, 900),
+    "solved": (260, 60, 1600, 980),
+    "face": (0, 430, 950, 1000),
+    "aligned": (260, 60, 1600, 980),
+    "side": (0, 60, 1250, 980),
 }
 # corners of a box in order round its base
 ROUND = (0, 1, 3, 2)
@@ -103,7 +102,7 @@ def _job() -> dict[str, object]:
     ring = [ROUND[(at + step) % 4] for step in (-1, 0, 1)]
     drum = things["drum"]
     eye = camera.centre_world - drum.world_from_object.translation
-    at = np.arctan2(eye[1], eye[0]) + np.array([-1.0, 0.0, 1.0])
+    at = np.arctan2(eye[1], eye[0]) + np.array([-1.25, 0.0, 1.25])
     rim = drum.radius * np.stack([np.cos(at), np.sin(at)], axis=1)
     foot = drum.world_from_object.apply(np.column_stack([rim, np.full(3, -drum.height / 2)]))
     return {
@@ -111,6 +110,7 @@ def _job() -> dict[str, object]:
         "height": pinhole.height,
         "box": _view(camera, corners[[*ring, front + 4]]).tolist(),
         "cylinder": _view(camera, foot).tolist(),
+        "aside": (_view(camera, foot)[1] + [-54, 110]).tolist(),
         "zoom_at": _view(camera, corners[[ring[2]]])[0].tolist(),
         "face": _view(camera, corners[4:].mean(axis=0)[None])[0].tolist(),
     }

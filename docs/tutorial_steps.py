@@ -34,6 +34,7 @@ ROOT_TWO = 2**0.5
 
 
 def stored():
+    """The cell of the scene."""
     return bpy.context.scene.monocell_cell
 
 
@@ -46,6 +47,7 @@ def worked():
 
 
 def typed(digits, pixel):
+    """Keys pressed one after another."""
     for digit in digits:
         press(digit, *place_of(pixel))
         yield PAUSE
@@ -65,6 +67,7 @@ def scrolled(wheel, turns=40):
 
 
 def made_active(name):
+    """One object selected, as by a click in the list."""
     for thing in bpy.context.scene.objects:
         thing.select_set(thing.name == name)
     bpy.context.view_layer.objects.active = bpy.context.scene.objects[name]
@@ -72,6 +75,7 @@ def made_active(name):
 
 
 def steps():
+    """The whole page, from top to bottom."""
     bpy.context.preferences.view.ui_scale = UI_SCALE
     yield from show_sidebar()
     yield from shot("start")
@@ -82,6 +86,7 @@ def steps():
 
 
 def camera_found():
+    """Sample and calibration."""
     in_view(bpy.ops.screen.screen_full_area)
     yield 1.0
     yield from show_sidebar()
@@ -114,6 +119,7 @@ def framed(pixel, closer):
 
 
 def two_drawn():
+    """A box by its corners, a cylinder with a typed height."""
     in_view(bpy.ops.monocell.add_box, "INVOKE_DEFAULT")
     yield PAUSE
     yield from framed(job["zoom_at"], 2.2)
@@ -127,16 +133,19 @@ def two_drawn():
     # a rim has no corners to snap to
     for pixel in job["cylinder"]:
         yield from click(pixel, ctrl=True)
-    yield from typed(("ONE", "FIVE", "ZERO"), job["cylinder"][2])
+    # where the loupe leaves the drum to be seen
+    move(job["aside"])
+    yield from typed(("ONE", "FIVE", "ZERO"), job["aside"])
     yield from shot("cylinder")
-    yield from typed(("RET",), job["cylinder"][2])
+    yield from typed(("RET",), job["aside"])
     found["left_over"] = handlers()
-    in_view(bpy.ops.view3d.view_center_camera)
+    in_view(bpy.ops.monocell.look_through)
     yield from settle()
     save("drawn")
 
 
 def all_solved():
+    """The picks that the sample brings, and a face as the next reference."""
     in_view(bpy.ops.monocell.solve_again, "EXEC_DEFAULT", True)
     yield from worked()
     for twin in ("crate", "drum"):
@@ -152,10 +161,13 @@ def all_solved():
     yield from shot("face")
     yield from click(job["face"])
     found["active"] = stored().references[stored().reference_index].name
+    yield from shot("on_face")
+    stored().reference_index = 0
     yield from scrolled("WHEELUPMOUSE")
 
 
 def aligned_and_used():
+    """Onto the edges, textures, from the side, export."""
     in_view(bpy.ops.monocell.align, "INVOKE_DEFAULT", everything=True)
     yield from worked()
     yield from made_active("box")
@@ -169,8 +181,12 @@ def aligned_and_used():
     space = view()[1].spaces.active
     space.shading.type = "MATERIAL"
     space.region_3d.view_perspective = "PERSP"
-    in_view(bpy.ops.view3d.view_orbit, angle=0.6, type="ORBITLEFT")
-    yield 2.0
+    in_view(bpy.ops.view3d.view_orbit, angle=0.5, type="ORBITLEFT")
+    for thing in bpy.context.scene.objects:
+        thing.select_set(thing.type == "MESH")
+    in_view(bpy.ops.view3d.view_selected)
+    in_view(bpy.ops.object.select_all, action="DESELECT")
+    yield 3.0
     yield from shot("side")
     in_view(bpy.ops.monocell.export_gltf, "EXEC_DEFAULT", filepath=str(out / "environment.glb"))
     yield from worked()
