@@ -94,16 +94,16 @@ def _tell_aligned(
         rows.append(row)
     print("aligned on the edges")
     print(table(("frame", "edge x", "edge y", "edge z", "believed", "radius", "believed"), rows))
-    for name, sizes, known in (
-        ("cube", cubes, CUBE_EDGE_MM),
-        ("cylinder", radii, CYLINDER_RADIUS_MM),
-    ):
-        every = np.array(sizes)
-        print(
-            f"{name}: mean {every.mean():.2f}, off by {np.abs(every - known).mean():.2f} on average, "
-            f"{np.abs(every - known).max():.2f} at most; from frame to frame "
-            f"{', '.join(f'{spread:.2f}' for spread in every.std(axis=0, ddof=1))}"
-        )
+    _tell_sizes("cube", np.array(cubes), CUBE_EDGE_MM)
+    _tell_sizes("cylinder", np.array(radii), CYLINDER_RADIUS_MM)
+
+
+def _tell_sizes(name: str, sizes: np.ndarray, known: float) -> None:
+    off, spreads = np.abs(sizes - known), sizes.std(axis=0, ddof=1)
+    print(
+        f"{name}: mean {sizes.mean():.2f}, off by {off.mean():.2f} on average, {off.max():.2f} at "
+        f"most; from frame to frame {', '.join(f'{spread:.2f}' for spread in spreads)}"
+    )
 
 
 def _tell_together(camera: Camera) -> None:
