@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Alignment without Blender: a cell in, the cell on its picture's edges and what was found out."""
+"""Alignment without Blender: a cell in, its objects on the picture's edges, or new ones, out."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from itertools import count
 
 from ..core.align.align_cell import align_cell
+from ..core.align.propose import Proposal, propose
 from ..core.align.result import AlignedObject
 from ..core.cell import Cell
 from ..core.errors import InvalidValue
-from ..core.picture.pictures import read_picture
+from ..core.picture.pictures import Picture, read_picture
+from ..core.reference import ReferencePlane
 from ..core.references.resolve import resolve_references
 
 
@@ -21,8 +25,28 @@ def aligned(
     Raises what `align_cell` raises, PictureError for a picture that can't be read, and InvalidValue
     for a cell without one.
     """
-    if cell.picture is None:
-        raise InvalidValue("the cell has no picture to align on: open one first")
-    picture = read_picture(cell.path_of(cell.picture), cell.camera.intrinsics)
-    moved, found = align_cell(cell, picture, names, watch=watch)
+    moved, found = align_cell(cell, _picture(cell), names, watch=watch)
     return resolve_references(moved)[0], found.objects
+
+
+def proposed(cell: Cell, on: str, watch: Callable[[str], None]) -> tuple[Proposal, ...]:
+    """Boxes and cylinders that may stand on the reference `on`, best first, by names that are free.
+
+    Raises what `propose` raises, and InvalidValue for a line or a cell without a picture.
+    """
+    plane = cell.reference(on)
+    if not isinstance(plane, ReferencePlane):
+        raise InvalidValue(f"{on} is a line: things stand on a plane; choose one in the list")
+    found = propose(cell.standing_camera(), _picture(cell), plane, cell.objects, watch)
+    taken = {thing.name for thing in cell.things}
+    free = (f"proposal {i}" for i in count(1) if f"proposal {i}" not in taken)
+    return tuple(
+        replace(one, thing=replace(one.thing, name=name))
+        for one, name in zip(found, free, strict=False)
+    )
+
+
+def _picture(cell: Cell) -> Picture:
+    if cell.picture is None:
+        raise InvalidValue("the cell has no picture to look at: open one first")
+    return read_picture(cell.path_of(cell.picture), cell.camera.intrinsics)

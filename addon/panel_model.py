@@ -17,6 +17,7 @@ from .operators.add_upright_line import AddUprightLine
 from .operators.add_upright_plane import AddUprightPlane
 from .operators.align import Align
 from .operators.pick_reference import PickReference
+from .operators.propose import Propose
 from .operators.remove_reference import RemoveReference
 from .operators.solve_again import SolveAgain
 from .panel_parts import CellPanel, next_thing, standing
@@ -67,6 +68,7 @@ class ModelPanel(CellPanel, bpy.types.Panel):
         tools.scale_y = 1.2
         for tool, text, icon in TOOLS:
             tools.operator(tool.bl_idname, text=text, icon=icon)
+        layout.operator(Propose.bl_idname, icon="VIEWZOOM")
         row = layout.row(align=True)
         row.prop(scene.monocell_inputs, "pick_sigma_pixels", text="Pick noise (px)")
         row.prop(scene.monocell_inputs, "show_grid", text="", icon="GRID")

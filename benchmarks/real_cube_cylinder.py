@@ -29,6 +29,7 @@ import cv2
 import numpy as np
 from cube_cylinder_picks import CUBE, CYLINDER
 from monocell.core import Camera, Cell, Intrinsics, Pose, ReferencePlane, Sketch
+from monocell.core.align.align import align
 from monocell.core.calibration.calibrate import calibrate_outlines
 from monocell.core.errors import MonocellError
 from monocell.core.modelling.solve import Modelled, model_cell
@@ -65,10 +66,44 @@ def main() -> None:
         print(table(HEADER, [_row(frame, *pair) for frame, pair in solved.items()]))
         _tell_spread([pair[0] for pair in solved.values()], [CUBE_EDGE_MM] * 3)
         _tell_spread([pair[1] for pair in solved.values()], [CYLINDER_RADIUS_MM])
+        _tell_aligned(camera, solved, pictures)
         if arguments.out:
             _write_overlays(pictures, camera, solved, arguments.out / name.replace(" ", "_"))
     print("\ncamera from the cube, all frames but its own together, of one size each")
     _tell_together(_from_cube(given))
+
+
+def _tell_aligned(
+    camera: Camera,
+    solved: dict[int, tuple[Modelled | None, Modelled | None]],
+    pictures: dict[int, np.ndarray],
+) -> None:
+    """Where the picture's edges put them from the picks, believed or not."""
+    rows, cubes, radii = [], [], []
+    for frame, pair in solved.items():
+        things = [one.object for one in pair if one is not None]
+        found = align(things, camera, pictures[frame], [TABLE]).objects
+        row = [str(frame)]
+        for name, sizes, count in (("cube", cubes, 3), ("cylinder", radii, 1)):
+            one = found.get(name)
+            if one is None or one.tried is None:
+                row += ["-"] * (count + 1)
+                continue
+            sizes.append(1e3 * one.tried.sizes[:count])
+            row += [*(f"{size:.2f}" for size in sizes[-1]), "yes" if one.believed else "no"]
+        rows.append(row)
+    print("aligned on the edges")
+    print(table(("frame", "edge x", "edge y", "edge z", "believed", "radius", "believed"), rows))
+    _tell_sizes("cube", np.array(cubes), CUBE_EDGE_MM)
+    _tell_sizes("cylinder", np.array(radii), CYLINDER_RADIUS_MM)
+
+
+def _tell_sizes(name: str, sizes: np.ndarray, known: float) -> None:
+    off, spreads = np.abs(sizes - known), sizes.std(axis=0, ddof=1)
+    print(
+        f"{name}: mean {sizes.mean():.2f}, off by {off.mean():.2f} on average, {off.max():.2f} at "
+        f"most; from frame to frame {', '.join(f'{spread:.2f}' for spread in spreads)}"
+    )
 
 
 def _tell_together(camera: Camera) -> None:

@@ -44,6 +44,7 @@ VERBS = (
     "set_motion",
     "solve_again",
     "align",
+    "propose",
     "take_colors",
     "take_textures",
     "export_gltf",

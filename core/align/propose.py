@@ -7,7 +7,7 @@ best are aligned on the edges, and the ones that most of the picture's edges sup
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from ..camera import Camera
@@ -57,11 +57,13 @@ def propose(
     picture_bgr: Picture,
     plane: ReferencePlane,
     things: Sequence[Primitive] = (),
+    watch: Callable[[str], None] | None = None,
 ) -> tuple[Proposal, ...]:
     """Candidates standing on `plane`, best first; where `things` are already, none is looked for.
 
-    They are named `proposal 1`, ... in the order given. Raises PictureError for a picture of
-    another size, NoPose without a camera pose.
+    They are named `proposal 1`, ... in the order given. `watch` is told each part of the picture
+    that is tried, and may raise to end it. Raises PictureError for a picture of another size,
+    NoPose without a camera pose.
     """
     check_size(picture_bgr, camera.intrinsics, "the picture")
     sight = PictureSight.of(picture_bgr)
@@ -80,6 +82,8 @@ def propose(
         # what was tried twice over the same part of the picture is not tried again
         if sum(_shared(cover.seed.mask, other) > SAME_SHARE for other in tried) < TRIES:
             tried.append(cover.seed.mask)
+            if watch is not None:
+                watch(f"part {len(tried)}")
             found += _aligned(cover, camera, sight, plane)
     found.sort(key=lambda p: (p.believed, p.score), reverse=True)
     kept = _different(found, camera, sight.encoded.shape)

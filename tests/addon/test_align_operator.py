@@ -56,3 +56,23 @@ def test_one_object_is_aligned_by_name_and_the_others_stay(addon, modelled, tmp_
 def test_an_object_that_is_not_there_is_refused_in_one_line(addon, modelled):
     with pytest.raises(RuntimeError, match="nothing"):
         addon.ops.monocell.align(name="nothing")
+
+
+@pytest.mark.slow
+def test_what_stands_on_the_table_is_proposed_and_added(addon, modelled, tmp_path):
+    cell, truth = modelled
+    write_cell(replace(cell, objects=()), tmp_path / "bare.cell.json")
+    addon.ops.monocell.open_cell(filepath=str(tmp_path / "bare.cell.json"))
+    assert addon.ops.monocell.propose() == {"FINISHED"}
+    addon.ops.monocell.save_cell(filepath=str(tmp_path / "now.cell.json"))
+    found = read_cell(tmp_path / "now.cell.json").objects
+    assert len(found) >= 3
+    for thing in found:
+        away = [
+            np.linalg.norm(
+                thing.world_from_object.translation - other.world_from_object.translation
+            )
+            for other in truth.values()
+        ]
+        # each stands where something does
+        assert min(away) < 0.005
