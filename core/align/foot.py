@@ -19,6 +19,8 @@ from .stations import Look, Pass, find_stations, unhidden
 FARTHEST, STEP, SAME = 11.0, 0.25, 1.2
 WIDE = Pass(FARTHEST + 3.0, FARTHEST, 8, 0.0, (), False)
 NEAR_PIXELS = 0.7
+# more than this many times the votes is as good as none for the foot itself
+MOST_SHARE = 10.0
 
 
 def foot_rivals(fit: EdgeFit, camera: Camera, look: Look) -> float:
@@ -39,7 +41,7 @@ def foot_rivals(fit: EdgeFit, camera: Camera, look: Look) -> float:
     shift = np.arange(-SAME, FARTHEST + STEP / 2, STEP)
     votes = stations.votes(shift[:, None] * (moved / most), NEAR_PIXELS)
     own = max(float(votes[np.abs(shift) <= SAME].max()), 1e-9)
-    return float(votes[shift > SAME].max()) / own
+    return min(float(votes[shift > SAME].max()) / own, MOST_SHARE)
 
 
 def _lower(fit: EdgeFit) -> Array:

@@ -33,6 +33,8 @@ ROUGH = 0.3
 LEAST_SHARE = 0.12
 # what one unit of the prior is in pixels; how near an edge has to be, round by round
 UNIT_PIXELS, NARROWING, NEAREST_PIXELS = 5.0, 0.7, 0.3
+# a rival with more than this many times the votes is told as having so many
+MOST_SHARE = 10.0
 # an edge this near to the outline supports it
 SUPPORTING_PIXELS = 0.5
 
@@ -119,7 +121,7 @@ def rivalry(fit: EdgeFit, camera: Camera, look: Look) -> float:
         votes = _votes_elsewhere(stations, tried @ jacobian.T, wide)
         best = tried[np.argsort(-votes)[:RIVALS_KEPT]]
     rival = float(_votes_elsewhere(stations, best @ jacobian.T, NEAREST_PIXELS).max())
-    return max(rival, 0.0) / max(float(own), 1e-9)
+    return min(max(rival, 0.0) / max(float(own), 1e-9), MOST_SHARE)
 
 
 def tangent(start: Solid, end: Solid) -> Array:

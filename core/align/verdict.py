@@ -30,7 +30,7 @@ FOOT_PIXELS = 12.0
 # edges below the foot may have this share of its votes
 LOWER_SHARE = 0.7
 # of the visible outline so much has an edge
-SUPPORTED_SHARE = 0.7
+SUPPORTED_SHARE = 0.8
 CREASE_MARGIN = 9
 TEXTURE_MARGIN = np.ones((9, 9), dtype=np.uint8)
 

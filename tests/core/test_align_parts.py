@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What alignment is made of: freedoms, outlines, samples of edges, steps of light, orders."""
 
+from dataclasses import replace
 from math import erf
 
 import cv2
 import numpy as np
 import pytest
-from drawn_tabletop import TABLE, box, camera, can
+from drawn_tabletop import TABLE, box, camera, can, picture
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from monocell.core.align.align import align
 from monocell.core.align.curve_samples import curve_samples
 from monocell.core.align.depth_order import in_front, nearest_first
 from monocell.core.align.freedom import Freedom
@@ -137,3 +139,22 @@ def _step_picture(place, blur, side):
     # a pixel sees the mean of the light on it, and sampling between pixels blurs a little more
     row = np.array([0.4 + 0.2 * side * erf(v / (np.hypot(blur, 0.01) * np.sqrt(2))) for v in x])
     return np.repeat(np.repeat(row[None], 41, axis=0)[:, :, None], 3, axis=2).astype(np.float32)
+
+
+def test_a_band_beside_a_foot_is_noticed_from_either_side():
+    thing, seen_by = can(), camera()
+    plain = picture([thing], seen_by, [(0.1, 0.2, 0.75)])
+    aligned = align([thing], seen_by, plain, [TABLE])
+    assert aligned.objects["can"].believed, aligned.objects["can"].reasons
+    # the same can without its lowest two centimetres: its foot is a band's edge
+    shorter = can(height=0.10)
+    lifted = replace(
+        shorter,
+        world_from_object=Pose(
+            np.eye(3), thing.world_from_object.translation + np.array([0, 0, 0.01])
+        ),
+    )
+    both = picture([lifted, can("low", height=0.02)], seen_by, [(0.1, 0.2, 0.75), (0.5, 0.1, 0.1)])
+    banded = align([can(height=0.112)], seen_by, both, [TABLE])
+    told = banded.objects["can"]
+    assert not told.believed or told.thing.height == pytest.approx(0.12, abs=0.002)
