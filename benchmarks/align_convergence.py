@@ -16,7 +16,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +27,7 @@ from monocell.core.align.result import AlignedObject
 from monocell.core.camera import Camera
 from monocell.core.modelling.solid import Solid
 from monocell.core.picture.overlay import draw_overlay
+from monocell.core.pose import Pose
 from monocell.core.primitives import Primitive
 from monocell.core.rotation import rotation_from_vector
 from monocell.core.shape.curves import curves_seen
@@ -131,7 +132,26 @@ def rough(
 
 
 def edge_distance(truth: Primitive, found: Primitive, camera: Camera) -> float:
-    """How far the true visible edges lie from the same edges of another solution, rms pixels."""
+    """How far the true visible edges lie from the same edges of another solution, rms pixels.
+
+    A box that is turned by right angles is the same box.
+    """
+    return min(_edge_distance(turned, found, camera) for turned in _turned(truth))
+
+
+def _turned(thing: Primitive) -> list[Primitive]:
+    if thing.kind != "box":
+        return [thing]
+    turns = []
+    for quarter in range(4):
+        turn = Pose(rotation_from_vector([0, 0, quarter * np.pi / 2]), np.zeros(3))
+        size = thing.sizes[[1, 0, 2]] if quarter % 2 else thing.sizes
+        turned = replace(thing, world_from_object=thing.world_from_object @ turn, covariance=None)
+        turns.append(turned.with_parameters(size))
+    return turns
+
+
+def _edge_distance(truth: Primitive, found: Primitive, camera: Camera) -> float:
     true, other = curves_seen(truth, camera), curves_seen(found, camera)
     lines = [
         (other.names[i], _pixels(found, other, i, FINE_SAMPLES, camera))

@@ -12,6 +12,7 @@ from ..camera import Camera
 from ..modelling.solid import Solid
 from ..picture.pictures import Picture
 from .depth_order import hull_of
+from .foot import foot_rivals
 from .freedom import Freedom
 from .hypotheses import hull_points, outlines
 from .prior import prior_root
@@ -55,7 +56,8 @@ def align_one(
 ) -> Tried:
     """Search and fit; `hidden` (H, W) is above 0 where others are in front or too near."""
     basis = freedom.basis(start)
-    root = prior_root(start, basis, camera, reach_pixels)
+    stated = freedom.thing.covariance
+    root = prior_root(start, basis, camera, reach_pixels, stated)
     if root is None:
         return _nothing("it is not in the picture, or nothing of it is free to move")
     motions = basis @ root
@@ -88,7 +90,9 @@ def _best(
     hull = hull_of(fit.solid, camera)
     texture = 0.0 if hull is None else texture_of(hull, fit, sight.edges)
     others = [other for other, _, _ in ends if other is not fit]
-    judged = verdict(fit, others, rivalry(fit, camera, look), texture)
+    judged = verdict(
+        fit, others, rivalry(fit, camera, look), texture, foot_rivals(fit, camera, look)
+    )
     if len(ends) < len(SEARCHES):
         judged = Verdict(False, (*judged.reasons, "only one of two searches came to an end"))
     return Tried(fit, judged, texture)

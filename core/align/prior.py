@@ -15,12 +15,17 @@ SIZE_SHARE, TURN = 0.12, 0.25
 # an outline may move by this share of the reach, and of its extent
 REACH_SHARE, EXTENT_SHARE = 0.75, 0.06
 STEP = 1e-5
+# what an object's source says of its error counts so many times, and is no less than this
+TRUSTED, LEAST_PIXELS = 2.5, 1.0
 
 
-def prior_root(solid: Solid, basis: Array, camera: Camera, reach_pixels: float) -> Array | None:
+def prior_root(
+    solid: Solid, basis: Array, camera: Camera, reach_pixels: float, stated: Array | None
+) -> Array | None:
     """A root (F, F) of the covariance over a basis (6 + P, F); None where the solid isn't imaged.
 
-    `basis @ root` are motions of one sigma each.
+    `basis @ root` are motions of one sigma each. `stated` (6 + P, 6 + P) is what the solid's own
+    source, its picks, says of its error: it is believed, but for a few sigmas.
     """
     count = basis.shape[1]
     hulls = hull_points(solid, np.vstack([np.zeros((1, len(basis))), STEP * basis.T]), camera)
@@ -32,5 +37,10 @@ def prior_root(solid: Solid, basis: Array, camera: Camera, reach_pixels: float) 
     information = by @ by.T / (by.shape[1] / 2) / sigma**2
     sizes = basis[6:] / (SIZE_SHARE * np.maximum(np.abs(solid.parameters), 1e-3))[:, None]
     information += sizes.T @ sizes + basis[:3].T @ basis[:3] / TURN**2
+    if stated is not None:
+        back = np.linalg.pinv(basis)
+        known = back @ stated @ back.T
+        least = LEAST_PIXELS**2 * np.linalg.inv(by @ by.T / (by.shape[1] / 2))
+        information += np.linalg.inv(TRUSTED**2 * known + least)
     root: Array = np.linalg.inv(np.linalg.cholesky(information)).T
     return root

@@ -20,13 +20,15 @@ from .refine import ROUGH, EdgeFit
 from .stations import CREASES
 
 # searches may end this far apart, rms pixels; what edges leave open at the worst place, 1 sigma
-APART_PIXELS, OPEN_PIXELS = 0.5, 0.22
+APART_PIXELS, OPEN_PIXELS = 0.5, 0.16
 # what even agreeing edges have in common that is wrong, 1 sigma of every station
 COMMON_PIXELS = 0.15
 # rivals may have this share of the votes; edges inside the outline, per pixel of its area
-RIVAL_SHARE, TEXTURE = 1.0, 0.15
+RIVAL_SHARE, TEXTURE = 1.0, 0.1
 # the foot of what stands on something is held by so much of an edge at least, pixels
 FOOT_PIXELS = 12.0
+# edges below the foot may have this share of its votes
+LOWER_SHARE = 0.7
 # of the visible outline so much has an edge
 SUPPORTED_SHARE = 0.7
 CREASE_MARGIN = 9
@@ -41,16 +43,24 @@ class Verdict:
     reasons: tuple[str, ...]
 
 
-def verdict(fit: EdgeFit, others: Sequence[EdgeFit], rivals: float, texture: float) -> Verdict:
+def verdict(
+    fit: EdgeFit, others: Sequence[EdgeFit], rivals: float, texture: float, feet: float
+) -> Verdict:
     """Judge a fit beside those of `others` searches.
 
-    `rivals` is as of `refine.rivalry`, `texture` as of `texture_of`.
+    `rivals` is as of `refine.rivalry`, `texture` as of `texture_of`, `feet` as of
+    `foot.foot_rivals`.
     """
     told = [
         _supported(fit),
         _open(fit),
         _foot(fit),
         _apart(fit, others),
+        (
+            f"below its foot lie edges with {100 * feet:.0f} % of the foot's votes"
+            if feet > LOWER_SHARE
+            else None
+        ),
         (
             f"edges elsewhere have {100 * rivals:.0f} % of its votes"
             if rivals > RIVAL_SHARE
