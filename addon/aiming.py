@@ -18,6 +18,9 @@ from ..core.picture.wireframe import wireframe
 from ..core.primitives import Primitive
 from .document import bare_cell, read_scene
 
+# pixels of the picture
+FARTHEST_SNAP = 4.0
+
 
 @dataclass(frozen=True, eq=False)
 class Aim:
@@ -44,7 +47,12 @@ class Aiming:
         return Aiming(_shown(scene, cell), modelled_corners(cell.camera, _objects(scene)))
 
     def aimed(self, pixel: Array, radius: float) -> Aim:
-        """A picture's corner within `radius` pixels, else a modelled one, else an edge."""
+        """A picture's corner within `radius` pixels, else a modelled one, else an edge.
+
+        In the picture it never looks farther than a hand is off: seen from afar, another corner may
+        lie within a few pixels of the screen.
+        """
+        radius = min(radius, FARTHEST_SNAP)
         found = None if self.picture is None else snapped(self.picture, pixel, radius)
         if found is not None and found.kind == "corner":
             return Aim(found.pixel, "corner")

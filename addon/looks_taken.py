@@ -92,7 +92,7 @@ def document_of(scene):
     if bpy.data.filepath:
         return Path(bpy.data.filepath).with_name(f"{title_of(scene.name)}.cell.json")
     raise InvalidValue(
-        "textures are files beside the cell: save the cell document or the .blend file first"
+        "textures are files beside the cell: save the .blend file first, or open a saved document"
     )
 
 

@@ -36,7 +36,7 @@ PARTS = {
     "solved": (260, 60, 1600, 980),
     "face": (0, 430, 950, 1000),
     "aligned": (260, 60, 1600, 980),
-    "side": (0, 60, 1250, 980),
+    "side": (340, 270, 1140, 810),
 }
 # corners of a box in order round its base
 ROUND = (0, 1, 3, 2)

@@ -20,7 +20,7 @@ from ..rotation import vector_from_rotation
 from .refine import EdgeFit, tangent
 
 # what all stations of one edge may share that is wrong: shading, encoding, the lens; 1 sigma
-COMMON_PIXELS = 0.08
+COMMON_PIXELS = 0.12
 # a weight below this tells nothing
 LEAST_WEIGHT = 0.05
 

@@ -20,7 +20,7 @@ from .refine import ROUGH, EdgeFit
 from .stations import CREASES
 
 # searches may end this far apart, rms pixels; what edges leave open at the worst place, 1 sigma
-APART_PIXELS, OPEN_PIXELS = 0.5, 0.16
+APART_PIXELS, OPEN_PIXELS = 0.5, 0.25
 # what even agreeing edges have in common that is wrong, 1 sigma of every station
 COMMON_PIXELS = 0.15
 # rivals may have this share of the votes; edges inside the outline, per pixel of its area

@@ -47,10 +47,10 @@ def test_all_objects_are_aligned_and_nearer_to_the_truth(addon, modelled, tmp_pa
 def test_one_object_is_aligned_by_name_and_the_others_stay(addon, modelled, tmp_path):
     _, truth = modelled
     before = errors(addon, truth, tmp_path)
-    assert addon.ops.monocell.align(name="tower") == {"FINISHED"}
+    assert addon.ops.monocell.align(name="crate") == {"FINISHED"}
     after = errors(addon, truth, tmp_path)
     moved = [name for name in before if after[name] != before[name]]
-    assert moved == ["tower"]
+    assert moved == ["crate"]
 
 
 def test_an_object_that_is_not_there_is_refused_in_one_line(addon, modelled):

@@ -102,7 +102,7 @@ def test_without_a_saved_cell_or_blend_textures_are_refused_and_colours_are_not(
 ):
     scene = opened(addon, painted)
     scene.monocell_cell.path = ""
-    with pytest.raises(RuntimeError, match=r"save the cell document or the \.blend file"):
+    with pytest.raises(RuntimeError, match=r"save the \.blend file"):
         addon.ops.monocell.take_textures(everything=True)
     assert addon.ops.monocell.take_colors(everything=True) == {"FINISHED"}
 
