@@ -20,7 +20,7 @@ from .refine import EdgeFit, refine, rivalry
 from .search import Found, Surroundings, Worth, search
 from .sight import PictureSight
 from .stations import CREASES, Look
-from .verdict import Verdict, texture_of, verdict
+from .verdict import OPEN_PIXELS, PICKED_OPEN_PIXELS, Verdict, texture_of, verdict
 from .window import looked_up
 
 # two searches, one led by edges and one by colours: where they differ, doubt begins
@@ -76,11 +76,16 @@ def align_one(
             ends.append((fit, found, look))
     if not ends:
         return _nothing("the picture has no edges where it should have its own")
-    return _best(ends, camera, sight)
+    # what began near the truth, as its picks say, has few rivals near: it may be left more open
+    most_open = OPEN_PIXELS if stated is None else PICKED_OPEN_PIXELS
+    return _best(ends, camera, sight, most_open)
 
 
 def _best(
-    ends: Sequence[tuple[EdgeFit, Found, Look]], camera: Camera, sight: PictureSight
+    ends: Sequence[tuple[EdgeFit, Found, Look]],
+    camera: Camera,
+    sight: PictureSight,
+    most_open: float,
 ) -> Tried:
     scores = [
         _on_edges(fit) + float(np.mean([_sides(fit, found, camera) for _, found, _ in ends]))
@@ -91,7 +96,12 @@ def _best(
     texture = 0.0 if hull is None else texture_of(hull, fit, sight.edges)
     others = [other for other, _, _ in ends if other is not fit]
     judged = verdict(
-        fit, others, rivalry(fit, camera, look), texture, foot_rivals(fit, camera, look)
+        fit,
+        others,
+        rivalry(fit, camera, look),
+        texture,
+        foot_rivals(fit, camera, look),
+        most_open,
     )
     if len(ends) < len(SEARCHES):
         judged = Verdict(False, (*judged.reasons, "only one of two searches came to an end"))
