@@ -20,7 +20,7 @@ from .refine import EdgeFit, refine, rivalry
 from .search import Found, Surroundings, Worth, search
 from .sight import PictureSight
 from .stations import CREASES, Look
-from .verdict import OPEN_PIXELS, PICKED_OPEN_PIXELS, Verdict, texture_of, verdict
+from .verdict import Verdict, texture_of, verdict
 from .window import looked_up
 
 # two searches, one led by edges and one by colours: where they differ, doubt begins
@@ -76,16 +76,13 @@ def align_one(
             ends.append((fit, found, look))
     if not ends:
         return _nothing("the picture has no edges where it should have its own")
-    # what began near the truth, as its picks say, has few rivals near: it may be left more open
-    most_open = OPEN_PIXELS if stated is None else PICKED_OPEN_PIXELS
-    return _best(ends, camera, sight, most_open)
+    return _best(ends, camera, sight)
 
 
 def _best(
     ends: Sequence[tuple[EdgeFit, Found, Look]],
     camera: Camera,
     sight: PictureSight,
-    most_open: float,
 ) -> Tried:
     scores = [
         _on_edges(fit) + float(np.mean([_sides(fit, found, camera) for _, found, _ in ends]))
@@ -101,7 +98,6 @@ def _best(
         rivalry(fit, camera, look),
         texture,
         foot_rivals(fit, camera, look),
-        most_open,
     )
     if len(ends) < len(SEARCHES):
         judged = Verdict(False, (*judged.reasons, "only one of two searches came to an end"))

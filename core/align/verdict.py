@@ -20,7 +20,7 @@ from .refine import ROUGH, EdgeFit
 from .stations import CREASES
 
 # searches may end this far apart, rms pixels; what edges leave open at the worst place, 1 sigma
-APART_PIXELS, OPEN_PIXELS, PICKED_OPEN_PIXELS = 0.5, 0.16, 0.25
+APART_PIXELS, OPEN_PIXELS = 0.5, 0.16
 # what even agreeing edges have in common that is wrong, 1 sigma of every station
 COMMON_PIXELS = 0.15
 # rivals may have this share of the votes; edges inside the outline, per pixel of its area
@@ -49,16 +49,15 @@ def verdict(
     rivals: float,
     texture: float,
     feet: float,
-    most_open: float = OPEN_PIXELS,
 ) -> Verdict:
     """Judge a fit beside those of `others` searches.
 
     `rivals` is as of `refine.rivalry`, `texture` as of `texture_of`, `feet` as of
-    `foot.foot_rivals`. Its edges may leave `most_open` pixels open, 1 sigma.
+    `foot.foot_rivals`.
     """
     told = [
         _supported(fit),
-        _open(fit, most_open),
+        _open(fit),
         _foot(fit),
         _apart(fit, others),
         (
@@ -115,14 +114,14 @@ def _supported(fit: EdgeFit) -> str | None:
     return f"only {100 * share:.0f} % of its visible outline lies on edges"
 
 
-def _open(fit: EdgeFit, most: float) -> str | None:
+def _open(fit: EdgeFit) -> str | None:
     worth = np.where(fit.stations.outline, 1.0, CREASES) * fit.supported
     over = worth / (fit.sigma**2 + COMMON_PIXELS**2)
     information = (fit.jacobian * over[:, None]).T @ fit.jacobian
     covariance = np.linalg.inv(information + np.eye(len(information)) / ROUGH**2)
     spread = np.einsum("si,ij,sj->s", fit.jacobian, covariance, fit.jacobian)
     worst = float(np.sqrt(spread.max()))
-    if worst <= most:
+    if worst <= OPEN_PIXELS:
         return None
     return f"its edges leave {worst:.2f} px of its outline open"
 
