@@ -88,6 +88,9 @@ def in_shadow(light: Array, ground: NDArray[np.bool_]) -> Array:
     if ground.sum() < 30:
         return np.zeros(len(light))
     usual = np.median(light[ground], axis=0)
+    # black ground can't be told from its own shadow
+    if not usual.any():
+        return np.zeros(len(light))
     along = usual / np.linalg.norm(usual)
     reach = light @ along
     off = np.sqrt(np.maximum(np.einsum("ij,ij->i", light, light) - reach**2, 0.0))

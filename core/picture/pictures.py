@@ -83,8 +83,12 @@ def linear_light(picture: Picture) -> Light:
     """sRGB-encoded pixels to amounts of light from 0 to 1, float32 (IEC 61966-2-1).
 
     Edges are measured on light, because blur mixes light: on encoded values every edge moves
-    towards its dark side.
+    towards its dark side. Raises PictureError for anything but 8 or 16 bits.
     """
+    if picture.dtype not in (np.uint8, np.uint16):
+        raise PictureError(
+            f"the picture holds {picture.dtype} values; give it as it was encoded, 8 or 16 bits"
+        )
     table = _decoding(picture.dtype.name)
     if picture.dtype == np.uint8:
         return np.asarray(cv2.LUT(picture, table), dtype=np.float32)

@@ -11,6 +11,7 @@ from drawn_tabletop import TABLE, box, camera, can, picture
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from monocell.core.align.align import align
+from monocell.core.align.color_models import in_shadow
 from monocell.core.align.curve_samples import curve_samples
 from monocell.core.align.depth_order import in_front, nearest_first
 from monocell.core.align.freedom import Freedom
@@ -158,3 +159,9 @@ def test_a_band_beside_a_foot_is_noticed_from_either_side():
     banded = align([can(height=0.112)], seen_by, both, [TABLE])
     told = banded.objects["can"]
     assert not told.believed or told.thing.height == pytest.approx(0.12, abs=0.002)
+
+
+@pytest.mark.filterwarnings("error")
+def test_on_black_ground_nothing_counts_as_its_shadow():
+    light = np.zeros((50, 3))
+    np.testing.assert_array_equal(in_shadow(light, np.ones(50, dtype=bool)), 0.0)

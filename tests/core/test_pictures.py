@@ -135,3 +135,8 @@ def test_light_is_decoded_as_srgb_states(dtype):
     assert light[0] == 0
     assert light[-1] == 1
     assert light[-2] == pytest.approx(0.5, abs=0.005)
+
+
+def test_a_picture_of_other_numbers_than_8_or_16_bits_is_refused():
+    with pytest.raises(PictureError, match="float64 values; give it as it was encoded"):
+        linear_light(np.zeros((4, 4, 3)))
