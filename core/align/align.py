@@ -35,6 +35,8 @@ Watch = Callable[[str], None]
 
 # how far a rough outline may be off, pixels, and its sizes, as a share
 REACH_PIXELS = 8.0
+# of a picture that is another's hardly any object is believed
+FEW_SHARE = 0.2
 # what is in front covers so much more of the picture, and its edges reach so far
 COVER, NEAR = (np.ones((n, n), dtype=np.uint8) for n in (3, 9))
 # what stands about is rough itself: its place is known to so many pixels
@@ -142,7 +144,7 @@ class _Work:
             told = _told(thing, tried, final, reasons)
             objects[thing.name] = told
             things.append(told.thing)
-        return Aligned(tuple(things), objects)
+        return Aligned(tuple(things), objects, _doubts(objects))
 
     def _about(self, j: int) -> Picture:
         """Where an object may be, (H, W), from 0 to 255: its place is known roughly."""
@@ -213,6 +215,17 @@ def _told(
         float(np.median(np.abs(residual))) if len(residual) else 0.0,
         supported_share(fit),
         tested.texture,
+    )
+
+
+def _doubts(objects: Mapping[str, AlignedObject]) -> tuple[str, ...]:
+    """One that fits a strange picture does so by chance: few among many are doubtful, too."""
+    believed = [name for name, one in objects.items() if one.believed]
+    if not believed or len(believed) >= FEW_SHARE * len(objects):
+        return ()
+    return (
+        f"only {', '.join(believed)} of {len(objects)} objects fits the picture's edges: is it the "
+        "picture of this cell, the right way round?",
     )
 
 

@@ -10,12 +10,13 @@ import pytest
 from drawn_tabletop import TABLE, box, camera, can, picture
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from monocell.core.align.align import align
+from monocell.core.align.align import _doubts, align
 from monocell.core.align.color_models import in_shadow
 from monocell.core.align.curve_samples import curve_samples
 from monocell.core.align.depth_order import in_front, nearest_first
 from monocell.core.align.freedom import Freedom
 from monocell.core.align.hypotheses import hull_points, outlines
+from monocell.core.align.result import AlignedObject
 from monocell.core.align.step_edges import profiles, step_misfits
 from monocell.core.modelling.solid import Solid
 from monocell.core.pose import Pose
@@ -165,3 +166,12 @@ def test_a_band_beside_a_foot_is_noticed_from_either_side():
 def test_on_black_ground_nothing_counts_as_its_shadow():
     light = np.zeros((50, 3))
     np.testing.assert_array_equal(in_shadow(light, np.ones(50, dtype=bool)), 0.0)
+
+
+def test_one_believed_among_many_is_doubted_and_most_are_not():
+    thing = box()
+    told = AlignedObject(thing, thing, True, ())
+    strange = AlignedObject(thing, thing, False, ("no edges",))
+    few = {"a": told} | {f"b{i}": strange for i in range(6)}
+    assert "only a of 7 objects" in _doubts(few)[0]
+    assert _doubts({"a": told, "b": strange}) == ()
