@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import count
 
 from ..core.align.align_cell import align_cell
 from ..core.align.propose import Proposal, propose
-from ..core.align.result import AlignedObject
+from ..core.align.result import Aligned
 from ..core.cell import Cell
 from ..core.errors import InvalidValue
 from ..core.picture.pictures import Picture, read_picture
@@ -19,14 +19,14 @@ from ..core.references.resolve import resolve_references
 
 def aligned(
     cell: Cell, names: Sequence[str] | None, watch: Callable[[str], None]
-) -> tuple[Cell, Mapping[str, AlignedObject]]:
-    """The cell with the named objects (None: all) aligned, and what was found of each, by name.
+) -> tuple[Cell, Aligned]:
+    """The cell with the named objects (None: all) aligned, and what was found of each.
 
     Raises what `align_cell` raises, PictureError for a picture that can't be read, and InvalidValue
     for a cell without one.
     """
     moved, found = align_cell(cell, _picture(cell), names, watch=watch)
-    return resolve_references(moved)[0], found.objects
+    return resolve_references(moved)[0], found
 
 
 def proposed(cell: Cell, on: str, watch: Callable[[str], None]) -> tuple[Proposal, ...]:

@@ -39,8 +39,8 @@ class Align(WorksInBackground, NeedsPose, bpy.types.Operator):
 
     def finish(self, context, result):
         """Show what moved, and say what was not believed and why."""
-        cell, found = result
-        scene = context.scene
+        cell, aligned = result
+        scene, found = context.scene, aligned.objects
         write_scene(scene, cell, stored_report(scene))
         told = show_objects(scene, cell, [n for n, one in found.items() if one.believed])
         moved = [one for one in found.values() if one.believed]
@@ -51,6 +51,11 @@ class Align(WorksInBackground, NeedsPose, bpy.types.Operator):
             "it back",
         )
         doubts = [f"{n}: not aligned: {why}" for n, one in found.items() for why in one.reasons]
-        for warning in (*told, *doubts, *(w for one in moved for w in one.warnings)):
+        for warning in (
+            *aligned.warnings,
+            *told,
+            *doubts,
+            *(w for one in moved for w in one.warnings),
+        ):
             self.report({"WARNING"}, warning)
         return {"FINISHED"}
