@@ -123,14 +123,18 @@ class WorksInBackground:
         if self._job.running or event.type != "TIMER":
             return {"RUNNING_MODAL"} if event.type == "ESC" else {"PASS_THROUGH"}
         self._end(context)
-        return self._ended(context)
+        return self._ended(context, event)
 
     def cancel(self, context):
         """Blender's own way out, when a file is loaded or the window closes."""
         self._job.watch.stop()
         self._end(context)
 
-    def _ended(self, context):
+    def arrived(self, context, event, result):
+        """What follows when the work is done in a window."""
+        return self.finish(context, result)
+
+    def _ended(self, context, event):
         try:
             result = self._job.result()
             if context.window_manager.monocell_work.cancel:
@@ -146,7 +150,7 @@ class WorksInBackground:
         if scene.name != self._scene or scene.monocell_cell.text != self._text:
             self.report({"ERROR"}, "The cell was changed meanwhile: start again for it as it is")
             return {"CANCELLED"}
-        return self.finish(context, result)
+        return self.arrived(context, event, result)
 
     def _end(self, context):
         context.window_manager.event_timer_remove(self._timer)

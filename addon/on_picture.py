@@ -41,15 +41,29 @@ class OnPicture:
     `keys()`, the icons and words of the status bar. Cancelling leaves nothing behind.
     """
 
+    # whether a click means the corner or edge near it
+    snaps = True
+
     def begin(self, context, event):
         """Become modal in the viewport that looks through the cell's camera."""
-        scene, space = context.scene, context.space_data
-        if space is None or space.type != "VIEW_3D" or not looks_through(scene, space):
+        if not self.can_look(context):
             self.report({"ERROR"}, "Look through the cell's camera first: picks are made there")
             return {"CANCELLED"}
+        self.enter(context, event)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def can_look(self, context):
+        """Whether the operator stands in a viewport that shows the picture."""
+        space = context.space_data
+        return space is not None and space.type == "VIEW_3D" and looks_through(context.scene, space)
+
+    def enter(self, context, event):
+        """Begin to draw and to follow the mouse; for an operator that is modal already."""
         from .aiming import Aiming
         from .loupe import shown_pixels
 
+        scene = context.scene
         self.settings = settings(context)
         self._area = context.area.as_pointer()
         self._intrinsics = bare_cell(scene).camera.intrinsics
@@ -60,10 +74,8 @@ class OnPicture:
         self._handle = bpy.types.SpaceView3D.draw_handler_add(
             self._draw, (context,), "WINDOW", "POST_PIXEL"
         )
-        context.window_manager.modal_handler_add(self)
         self.tell(context)
         context.area.tag_redraw()
-        return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
         """One event: the operator's own, or something for Blender."""
@@ -163,7 +175,8 @@ class OnPicture:
     def tell(self, context):
         """Name the keys in the status bar."""
         snapping = "Do not snap" if self.settings.snap else "Snap"
-        keys = (*self.keys(), ("EVENT_CTRL", f"   {snapping}"), *PAN_KEYS)
+        turns = (("EVENT_CTRL", f"   {snapping}"),) if self.snaps else ()
+        keys = (*self.keys(), *turns, *PAN_KEYS)
 
         def draw(header, context):
             row = header.layout.row(align=True)

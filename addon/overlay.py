@@ -46,10 +46,10 @@ class Overlay:
         frame = picture_frame(scene, context.region, space, intrinsics)
         (x, y), (right, below) = frame.region_points([[0.0, 0.0], [1.0, 1.0]])
         look = settings(context)
-        batches = [
-            *self._grid_batches(scene, look),
-            *self._object_batches(context, scene, look),
-        ]
+        batches = list(self._grid_batches(scene, look))
+        # what would change is drawn instead
+        if not context.window_manager.monocell_work.reviewing:
+            batches += self._object_batches(context, scene, look)
         # sightings would lie over what is picked
         picking = context.window_manager.monocell_work.picking
         batches += [] if picking else self._ball_batches(scene, look)

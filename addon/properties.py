@@ -143,6 +143,7 @@ class Work(bpy.types.PropertyGroup):
     name: StringProperty(name="What it has come to")
     share: FloatProperty(name="How much is done", min=0.0, max=1.0)
     cancel: BoolProperty(name="Whether it was told to end")
+    reviewing: BoolProperty(name="Whether what would change is shown, and the model is not")
     picking: BoolProperty(name="Whether an object is being picked, and sightings are hidden")
 
 
