@@ -7,6 +7,7 @@ so that steps can be left out of a log and the rest done again.
 
 from __future__ import annotations
 
+import os
 import re
 import traceback
 from dataclasses import dataclass
@@ -23,7 +24,7 @@ from scene_check import check_scene
 REFUSAL = re.compile(r"Error: [^\n]+|Operator bpy\.ops\.monocell\.\w+\.poll\(\) (?!failed)[^\n]+")
 UNDO_SHARE = 0.12
 REACHED = "steps.txt"
-MOST_REPLAYS = 150
+MOST_REPLAYS = int(os.environ.get("MONOCELL_REPLAYS", "150"))
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def walked(new_hand, steps):
 
 def shortest(new_hand, steps, failure):
     """As few of the steps as still go wrong in the same place, by leaving out ever smaller parts."""
-    wanted, size, replays = _place(failure), len(steps) // 2, 0
+    wanted, size, replays = _place(failure), max(1, len(steps) // 2), 0
     while size >= 1:
         start = 0
         while start < len(steps) and replays < MOST_REPLAYS:
@@ -95,7 +96,7 @@ class Hand(PickMoves, VerbMoves, FileMoves, BlenderMoves):
         self.bpy, self.module, self.bench, self.folder = bpy, module, bench, folder
         self.folder.mkdir(parents=True, exist_ok=True)
         self.ops, self.told = bpy.ops.monocell, told
-        self.pressed, self.refusals, self.checked = set(), [], 0
+        self.refusals, self.made, self.checked = [], 0, 0
         self.log = (folder / REACHED).open("w")
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
         self.module("addon.preferences").settings(bpy.context)
@@ -112,6 +113,7 @@ class Hand(PickMoves, VerbMoves, FileMoves, BlenderMoves):
     def do(self, step):
         """Make a step and check all that has to hold after it."""
         self._note(f"{step}\n")
+        self.made += 1
         self.rng = np.random.default_rng(step.seed)
         getattr(self, f"does_{step.move}")()
         before = self.check()
@@ -132,7 +134,6 @@ class Hand(PickMoves, VerbMoves, FileMoves, BlenderMoves):
 
     def press(self, verb, **properties):
         """One of our operators as the interface calls it: refused in one line, or done."""
-        self.pressed.add(verb)
         self._note(f"    # {verb} {properties}\n")
         try:
             return getattr(self.ops, verb)("EXEC_DEFAULT", True, **properties)

@@ -48,7 +48,7 @@ class VerbMoves:
         elif field == "center":
             row.center[int(self.rng.integers(3))] = float(self.rng.normal(0.3, 0.2))
         elif field == "radius":
-            row.radius = float(self.rng.uniform(0.001, 0.1))
+            row.radius = float(self.one_of([self.rng.uniform(0.001, 0.1), 1e6, 0.0]))
         else:
             self.stored.sighting_index = row.index
         self.by_hand(f"sighting's {field}")

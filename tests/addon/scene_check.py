@@ -61,18 +61,19 @@ def _check_objects(bpy, module, cell):
     if bpy.context.mode != "OBJECT":
         # the mesh is Blender's own until the mode is left
         return
-    bpy.context.view_layer.update()
+    graph = bpy.context.evaluated_depsgraph_get()
     for ob, thing in zip(modelled, cell.objects, strict=True):
         # a hidden object's matrix is not kept by Blender
         if not ob.data.vertices or ob.name not in bpy.context.view_layer.objects:
             continue
-        seen = np.array([ob.matrix_world @ vertex.co for vertex in ob.data.vertices])
+        place = ob.evaluated_get(graph).matrix_world
+        seen = np.array([place @ vertex.co for vertex in ob.data.vertices])
         told = thing.world_from_object.apply(tessellated(thing).vertices)
         off = max(
             np.abs(seen.min(axis=0) - told.min(axis=0)).max(),
             np.abs(seen.max(axis=0) - told.max(axis=0)).max(),
         )
-        assert off <= SHAPE_SHARE * np.ptp(told, axis=0).max(), (ob.name, thing, off)
+        assert off <= SHAPE_SHARE * np.ptp(told, axis=0).max(), (ob.name, thing.kind, off, place)
 
 
 def _check_overlay(bpy, module):

@@ -51,7 +51,7 @@ def go(new_hand, steps):
     """Make the steps; a failure tells the fewest that lead there, as a log to be replayed."""
     hand, failure = walked(new_hand, steps)
     if failure is not None:
-        fewest = shortest(new_hand, steps, failure)
+        fewest = shortest(new_hand, steps[: hand.made], failure)
         log = hand.folder / "fewest.txt"
         log.write_text("".join(f"{step}\n" for step in fewest))
         told = walked(new_hand, fewest)[1] or failure
