@@ -13,6 +13,7 @@ from bpy.props import (
     StringProperty,
 )
 
+from ..core.sighting import LEAST_RADIUS, MOST_RADIUS
 from .document import bare_cell
 from .inputs import SceneInputs
 from .object_fields import ObjectFields
@@ -49,7 +50,10 @@ def _radius(row):
 
 
 def _set_radius(row, value):
-    edit_sighting(row.id_data, row.index, radius=float(decimals([value])[0]))
+    # a point has none; the field is not shown for it
+    if row.kind == "ball":
+        radius = min(max(float(decimals([value])[0]), LEAST_RADIUS), MOST_RADIUS)
+        edit_sighting(row.id_data, row.index, radius=radius)
 
 
 class SightingRow(bpy.types.PropertyGroup):
@@ -76,7 +80,8 @@ class SightingRow(bpy.types.PropertyGroup):
     radius: FloatProperty(
         name="Radius",
         description="Radius of the ball, metres",
-        min=1e-5,
+        min=LEAST_RADIUS,
+        max=MOST_RADIUS,
         precision=4,
         unit="LENGTH",
         get=_radius,
