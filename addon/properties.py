@@ -98,11 +98,11 @@ class ReferenceRow(bpy.types.PropertyGroup):
 
 def _active_index(cell):
     active = bpy.context.view_layer.objects.active
-    return cell.collection.objects.find(active.name) if active and cell.collection else -1
+    return cell.id_data.objects.find(active.name) if active else -1
 
 
 def _activate(cell, index):
-    ob = cell.collection.objects[index]
+    ob = cell.id_data.objects[index]
     for other in bpy.context.selected_objects:
         other.select_set(False)
     # hidden and excluded objects can't be selected, and are listed all the same

@@ -81,8 +81,9 @@ def use_step(scene: Any) -> Step:
 
 def count_objects(scene: Any) -> int:
     """How many objects the scene's cell holds."""
-    collection = scene.monocell_cell.collection
-    return len(collection.objects) if has_cell(scene) and collection is not None else 0
+    from ..scene.objects import is_modelled
+
+    return sum(is_modelled(ob) for ob in scene.objects) if has_cell(scene) else 0
 
 
 def _to_calibrate(count: int, used: int) -> str:
