@@ -152,12 +152,19 @@ def show_objects(scene: Any, cell: Cell, names: Collection[str] | None = None) -
 
 
 def objects_collection(scene: Any) -> Any:
-    """Where the cell's objects are built; made, or linked again, where a user removed it."""
+    """Where the cell's objects are built; made, or linked again, where a user removed it.
+
+    A scene that was made with the settings of another gets one of its own.
+    """
     stored = scene.monocell_cell
-    if stored.collection is None:
+    if stored.collection in list(scene.collection.children_recursive):
+        return stored.collection
+    others = (other for other in bpy.data.scenes if other != scene)
+    if stored.collection is None or any(
+        stored.collection in list(other.collection.children_recursive) for other in others
+    ):
         stored.collection = bpy.data.collections.new("Cell objects")
-    if stored.collection not in scene.collection.children_recursive:
-        scene.collection.children.link(stored.collection)
+    scene.collection.children.link(stored.collection)
     return stored.collection
 
 

@@ -120,6 +120,7 @@ class SceneCell(bpy.types.PropertyGroup):
     text: StringProperty(name="Cell document without objects, JSON")
     report: StringProperty(name="Last calibration, JSON")
     folder: StringProperty(name="Folder that picture names start from")
+    folder_beside: StringProperty(name="The same as seen from the .blend file when it was saved")
     path: StringProperty(name="Document this was read from or last written to")
     shown_picture: StringProperty(name="Picture behind the camera view")
     camera: PointerProperty(type=bpy.types.Object, name="The cell's camera")

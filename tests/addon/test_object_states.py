@@ -145,48 +145,6 @@ def test_a_linked_duplicate_keeps_its_shape_when_its_twin_is_resized(addon, scen
     assert np.allclose(after["box.001"].size, before["box.001"].size)
 
 
-@pytest.mark.parametrize("mode", ["EDIT", "SCULPT", "VERTEX_PAINT", "WEIGHT_PAINT"])
-def test_in_any_mode_objects_are_solved_added_and_exported(addon, scene, tmp_path, mode):
-    before = things(addon, tmp_path)
-    addon.context.view_layer.objects.active = scene.objects["box"]
-    addon.ops.object.mode_set(mode=mode)
-    assert addon.ops.monocell.export_gltf(filepath=str(tmp_path / "cell.glb")) == {"FINISHED"}
-    assert addon.ops.monocell.solve_again() == {"FINISHED"}
-    assert addon.context.mode == "OBJECT"
-    assert scene.objects["box"].mode == "OBJECT"
-    addon.ops.object.mode_set(mode=mode)
-    add(addon, "box", bench_cell.box_picks(), name="crate")
-    assert scene.objects["box"].mode == "OBJECT"
-    after = things(addon, tmp_path)
-    assert object_entry(after["box"]) == object_entry(before["box"])
-    assert sorted(after) == ["box", "crate", "drum"]
-
-
-def test_an_edit_that_is_still_going_on_is_in_the_document(addon, scene, tmp_path):
-    import bmesh
-
-    addon.context.view_layer.objects.active = scene.objects["box"]
-    addon.ops.object.mode_set(mode="EDIT")
-    mesh = bmesh.from_edit_mesh(scene.objects["box"].data)
-    before = things(addon, tmp_path)["box"]
-    for vertex in mesh.verts:
-        vertex.co.x *= 2
-    bmesh.update_edit_mesh(scene.objects["box"].data)
-    assert things(addon, tmp_path)["box"].size[0] == pytest.approx(2 * before.size[0], rel=1e-5)
-
-
-def test_objects_are_added_beside_a_posed_robot(addon, scene, tmp_path):
-    rig = addon.data.objects.new("rig", addon.data.armatures.new("rig"))
-    scene.collection.objects.link(rig)
-    addon.context.view_layer.objects.active = rig
-    addon.ops.object.mode_set(mode="EDIT")
-    bone = rig.data.edit_bones.new("link")
-    bone.tail = (0, 0, 0.2)
-    addon.ops.object.mode_set(mode="POSE")
-    add(addon, "box", bench_cell.box_picks(), name="crate")
-    assert "crate" in things(addon, tmp_path)
-
-
 def test_an_object_hung_on_a_bone_keeps_its_true_place(addon, scene, tmp_path):
     before = things(addon, tmp_path)["box"]
     rig = addon.data.objects.new("rig", addon.data.armatures.new("rig"))
@@ -203,37 +161,6 @@ def test_an_object_hung_on_a_bone_keeps_its_true_place(addon, scene, tmp_path):
     assert addon.ops.monocell.solve_again() == {"FINISHED"}
     addon.context.view_layer.update()
     same_place(things(addon, tmp_path)["box"], before)
-
-
-def linked_into(bpy, scene, tmp_path, *, override):
-    """The box of a library file, in the cell's collection instead of the one that was picked."""
-    path = tmp_path / "parts.blend"
-    bpy.data.libraries.write(str(path), {scene.objects["box"]})
-    bpy.data.objects.remove(scene.objects["box"])
-    with bpy.data.libraries.load(str(path), link=True) as (there, here):
-        here.objects = list(there.objects)
-    ob = here.objects[0]
-    scene.monocell_cell.collection.objects.link(ob)
-    if override:
-        local = ob.override_create()
-        scene.monocell_cell.collection.objects.unlink(ob)
-        if local.name not in scene.monocell_cell.collection.objects:
-            scene.monocell_cell.collection.objects.link(local)
-        return local
-    return ob
-
-
-@pytest.mark.parametrize("override", [False, True], ids=["linked", "overridden"])
-def test_what_belongs_to_a_library_stays_and_says_so(addon, scene, tmp_path, capfd, override):
-    ob = linked_into(addon, scene, tmp_path, override=override)
-    capfd.readouterr()
-    before = things(addon, tmp_path)
-    assert sorted(before) == ["box", "drum"]
-    addon.ops.monocell.set_size(name="box", size="size_z", metres=0.2)
-    after = things(addon, tmp_path)
-    assert object_entry(after["box"]) == object_entry(before["box"])
-    assert ob.data.library is not None
-    assert "parts.blend and was not changed; make it local first" in capfd.readouterr().out
 
 
 def test_modifiers_are_no_part_of_the_model_and_this_is_said(addon, scene, tmp_path, capfd):
