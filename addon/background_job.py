@@ -11,6 +11,8 @@ from collections.abc import Callable
 from threading import Thread
 from typing import Any
 
+import bpy
+
 from ..core.errors import MonocellError
 
 # how often Blender looks after the work, seconds
@@ -101,7 +103,7 @@ class WorksInBackground:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         state.title, state.share, state.name, state.cancel = title, 0.0, "", False
-        self._scene, self._text = context.scene.name, context.scene.monocell_cell.text
+        self._scene, self._text = context.scene.session_uid, context.scene.monocell_cell.text
         self._job = Job(work, total)
         self._timer = context.window_manager.event_timer_add(TICK, window=context.window)
         context.window_manager.modal_handler_add(self)
@@ -147,7 +149,7 @@ class WorksInBackground:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         scene = context.scene
-        if scene.name != self._scene or scene.monocell_cell.text != self._text:
+        if scene.session_uid != self._scene or scene.monocell_cell.text != self._text:
             self.report({"ERROR"}, "The cell was changed meanwhile: start again for it as it is")
             return {"CANCELLED"}
         return self.arrived(context, event, result)
@@ -155,8 +157,9 @@ class WorksInBackground:
     def _end(self, context):
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.monocell_work.title = ""
-        if context.workspace is not None:
-            context.workspace.status_text_set(None)
+        # the user may have gone to another workspace meanwhile
+        for workspace in bpy.data.workspaces:
+            workspace.status_text_set(None)
         _redraw(context)
 
 

@@ -84,7 +84,7 @@ class ModelPanel(CellPanel, bpy.types.Panel):
             layout.template_list(
                 ObjectList.bl_idname,
                 "",
-                stored.collection,
+                context.scene,
                 "objects",
                 stored,
                 "object_index",

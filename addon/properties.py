@@ -103,11 +103,11 @@ class ReferenceRow(bpy.types.PropertyGroup):
 
 def _active_index(cell):
     active = bpy.context.view_layer.objects.active
-    return cell.collection.objects.find(active.name) if active and cell.collection else -1
+    return cell.id_data.objects.find(active.name) if active else -1
 
 
 def _activate(cell, index):
-    ob = cell.collection.objects[index]
+    ob = cell.id_data.objects[index]
     for other in bpy.context.selected_objects:
         other.select_set(False)
     # hidden and excluded objects can't be selected, and are listed all the same
@@ -125,6 +125,7 @@ class SceneCell(bpy.types.PropertyGroup):
     text: StringProperty(name="Cell document without objects, JSON")
     report: StringProperty(name="Last calibration, JSON")
     folder: StringProperty(name="Folder that picture names start from")
+    folder_beside: StringProperty(name="The same as seen from the .blend file when it was saved")
     path: StringProperty(name="Document this was read from or last written to")
     shown_picture: StringProperty(name="Picture behind the camera view")
     camera: PointerProperty(type=bpy.types.Object, name="The cell's camera")

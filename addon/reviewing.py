@@ -28,7 +28,7 @@ class Reviewed(OnPicture):
         from .offer_drawing import OfferFrames
 
         offer = self.offered(context, result)
-        if not offer.open or not self.can_look(context):
+        if not offer.open or not _can_look(context, event):
             return self.take(context, result, offer)
         self._camera = read_scene(context.scene).standing_camera()
         self._frames = OfferFrames.of(offer, self._camera)
@@ -113,3 +113,15 @@ class Reviewed(OnPicture):
         loupe = Loupe(self.cursor, size, self.settings.loupe_zoom, scale)
         lines = [] if self._before else self._frames.near(self._offer, self.settings)
         loupe.draw(self._shown_pixels, frame.view_pixels([pixel])[0], lines, scale)
+
+
+def _can_look(context, event):
+    """Whether the operator stands in a viewport that shows the picture."""
+    from ..core.errors import InvalidValue
+    from .camera_view import picking_region
+
+    try:
+        picking_region(context, (event.mouse_x, event.mouse_y))
+    except InvalidValue:
+        return False
+    return True

@@ -7,13 +7,13 @@ import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..document import read_scene
+from ..document import doubts_of, read_scene
 from ..polls import NeedsCell
 from ..refusals import refuses
 
 
 class SaveCell(NeedsCell, bpy.types.Operator, ExportHelper):
-    """Save camera, sightings, references and objects as one cell document"""
+    """Save camera, sightings, references and all objects, hidden ones too, as a cell document"""
 
     bl_idname = "monocell.save_cell"
     bl_label = "Save Cell Document"
@@ -37,4 +37,6 @@ class SaveCell(NeedsCell, bpy.types.Operator, ExportHelper):
         cell = read_scene(context.scene)
         write_cell(cell, path)
         self.report({"INFO"}, f"{path}: {len(cell.objects)} objects saved")
+        for doubt in doubts_of(context.scene):
+            self.report({"WARNING"}, doubt)
         return {"FINISHED"}
