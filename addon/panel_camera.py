@@ -23,11 +23,9 @@ from .operators.paste_sightings import PasteSightings
 from .operators.read_sightings import ReadSightings
 from .operators.remove_sighting import RemoveSighting
 from .operators.show_picture import ShowPicture
-from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
+from .panel_parts import VERDICT_ICONS, CellPanel, next_thing, numbers, paragraph, standing
 from .preferences import settings
 from .steps import FEWEST_SIGHTINGS, camera_step
-
-VERDICT_ICONS = {"good": "CHECKMARK", "weak": "ERROR", "failed": "CANCEL"}
 
 
 class CameraPanel(CellPanel, bpy.types.Panel):

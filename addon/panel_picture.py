@@ -9,7 +9,8 @@ from .operators.look_through import LookThrough
 from .operators.open_cell import OpenCell
 from .operators.open_picture import OpenPicture
 from .operators.open_sample import OpenSample
-from .panel_parts import CellPanel, camera_inputs, next_thing, numbers, standing
+from .panel_lens import camera_inputs
+from .panel_parts import CellPanel, next_thing, numbers, standing
 from .steps import picture_step
 
 
@@ -30,18 +31,20 @@ class PicturePanel(CellPanel, bpy.types.Panel):
         if has_cell(scene):
             _draw_opened(layout, scene)
         else:
-            _draw_start(layout, scene.monocell_inputs)
+            _draw_start(layout, context)
 
 
-def _draw_start(layout, inputs):
+def _draw_start(layout, context):
+    inputs = context.scene.monocell_inputs
     column = layout.column(align=True)
     column.operator(OpenSample.bl_idname, icon="OUTLINER_OB_CAMERA")
     column.operator(OpenCell.bl_idname, icon="FILE_FOLDER")
     layout.separator(type="LINE")
     layout.prop(inputs, "picture", text="", placeholder="Picture")
-    camera_inputs(layout, inputs)
+    camera_inputs(layout, context)
+    stated = {"FILE": inputs.camera, "BOARD": context.scene.monocell_lens.estimate}
     ready = layout.row()
-    ready.enabled = bool(inputs.picture and (inputs.camera or inputs.camera_source != "FILE"))
+    ready.enabled = bool(inputs.picture and stated.get(inputs.camera_source, True))
     opened = ready.operator(OpenPicture.bl_idname, icon="IMAGE_DATA")
     opened.picture = inputs.picture
 

@@ -15,6 +15,7 @@ from bpy.props import (
 
 from .document import bare_cell
 from .inputs import SceneInputs
+from .lens_inputs import LensInputs
 from .object_fields import ObjectFields
 from .place_inputs import decimals
 from .sightings import edit_sighting
@@ -146,7 +147,7 @@ class Work(bpy.types.PropertyGroup):
     picking: BoolProperty(name="Whether an object is being picked, and sightings are hidden")
 
 
-CLASSES = (SightingRow, ReferenceRow, SceneCell, SceneInputs, ObjectFields, Work)
+CLASSES = (SightingRow, ReferenceRow, SceneCell, SceneInputs, LensInputs, ObjectFields, Work)
 
 
 def register():
@@ -155,6 +156,7 @@ def register():
         bpy.utils.register_class(cls)
     bpy.types.Scene.monocell_cell = PointerProperty(type=SceneCell)
     bpy.types.Scene.monocell_inputs = PointerProperty(type=SceneInputs)
+    bpy.types.Scene.monocell_lens = PointerProperty(type=LensInputs)
     bpy.types.Scene.monocell_object = PointerProperty(type=ObjectFields)
     bpy.types.WindowManager.monocell_work = PointerProperty(type=Work)
 
@@ -163,6 +165,7 @@ def unregister():
     """Take them off again; what they hold stays in the file."""
     del bpy.types.WindowManager.monocell_work
     del bpy.types.Scene.monocell_object
+    del bpy.types.Scene.monocell_lens
     del bpy.types.Scene.monocell_inputs
     del bpy.types.Scene.monocell_cell
     for cls in reversed(CLASSES):

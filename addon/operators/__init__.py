@@ -9,6 +9,7 @@ VERBS = (
     "open_cell",
     "open_gltf",
     "open_picture",
+    "estimate_lens",
     "drop_picture",
     "look_through",
     "show_picture",
