@@ -122,6 +122,7 @@ class SceneCell(bpy.types.PropertyGroup):
     report: StringProperty(name="Last calibration, JSON")
     folder: StringProperty(name="Folder that picture names start from")
     path: StringProperty(name="Document this was read from or last written to")
+    outdated: StringProperty(name="Why objects have to be solved again; empty where they need not")
     shown_picture: StringProperty(name="Picture behind the camera view")
     camera: PointerProperty(type=bpy.types.Object, name="The cell's camera")
     collection: PointerProperty(type=bpy.types.Collection, name="The cell's objects")

@@ -60,6 +60,8 @@ def model_step(scene: Any) -> Step:
     cell = bare_cell(scene)
     if cell.camera.camera_from_world is None:
         return Step("waiting", "Calibrate first: a picture has no scale without it.")
+    if scene.monocell_cell.outdated and count_objects(scene):
+        return Step("doubt", scene.monocell_cell.outdated)
     if cell.sketches:
         count = len(cell.sketches)
         return Step("next", f"{count} picked in the document: press Solve All.")

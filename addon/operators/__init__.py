@@ -10,6 +10,7 @@ VERBS = (
     "open_gltf",
     "open_picture",
     "estimate_lens",
+    "change_camera",
     "drop_picture",
     "look_through",
     "show_picture",

@@ -14,7 +14,7 @@ class EstimateLens(WorksInBackground, bpy.types.Operator):
     """Choose three or more pictures of the board, held at angles and up to the picture's rim"""
 
     bl_idname = "monocell.estimate_lens"
-    bl_label = "Estimate Lens from Board Pictures"
+    bl_label = "Estimate Lens"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
     directory: StringProperty(
