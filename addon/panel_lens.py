@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The fields that state a camera: file, numbers, angle, or a board's pictures with what they told."""
+"""The fields that state a camera: file, numbers, angle, or a board and what it told."""
 
 from .lens_estimate import parse_estimate
 from .operators.cancel_work import CancelWork

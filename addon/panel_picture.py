@@ -53,7 +53,7 @@ def _draw_start(layout, context):
 
 
 def _draw_opened(layout, scene):
-    stored, camera = scene.monocell_cell, bare_cell(scene).camera.intrinsics
+    stored = scene.monocell_cell
     if stored.camera is not None and len(stored.camera.data.background_images):
         plate = stored.camera.data.background_images[0]
         row = layout.row(align=True)

@@ -48,7 +48,7 @@ def camera_step(scene: Any) -> Step:
         return Step("done", "The document brought the camera's pose.")
     if report.changed:
         return Step("doubt", "Sightings changed since: calibrate again.")
-    if not report.verdict:
+    if report.searched or not report.verdict:
         return Step("next", "Balls were found again: calibrate to use them.")
     return _judged(report)
 
