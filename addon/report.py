@@ -45,7 +45,7 @@ class Report:
 
     `verdict` is empty, and the numbers are None, after a search alone. `changed` tells that
     sightings were edited since, `searched` that balls were found anew and the sightings show that.
-    `surface` says in words how well a point worked at is known.
+    `surface_millimetres` is how well a point worked at is known on the plane called `surface`.
     """
 
     verdict: str
@@ -57,6 +57,7 @@ class Report:
     advice: tuple[AdvisedPlace, ...] = ()
     changed: bool = False
     searched: bool = False
+    surface_millimetres: float | None = None
 
     def arranged(self, kept: Sequence[int | None]) -> Report:
         """The report after sightings were edited: `kept` has the old index of each, None of a new.
