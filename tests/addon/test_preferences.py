@@ -57,7 +57,9 @@ def test_captions_labels_and_places_are_told_in_the_user_s_unit(tmp_path):
     assert caption(bench_cell.BOX, UNITS["in"]) == "7.874 × 5.512 × 4.724 in"
     known = replace(bench_cell.BOX, covariance=np.diag([0.0] * 6 + [1e-6] * 3))
     assert caption(known, UNITS["cm"]) == "20.00 ± 0.10 × 14.00 ± 0.10 × 12.00 ± 0.10 cm"
-    session = PickSession(plan_of("box", "STANDING"), bench_cell.CAMERA, bench_cell.FLOOR, unit="in")
+    session = PickSession(
+        plan_of("box", "STANDING"), bench_cell.CAMERA, bench_cell.FLOOR, unit="in"
+    )
     place = session.place(bench_cell.CAMERA.project(np.zeros((1, 3)))[0])
     assert place.startswith("x 0.00   y 0.00   z 0.00 in   ± ")
     assert place.endswith(" in")
