@@ -93,6 +93,10 @@ class WorksInBackground:
 
     def invoke(self, context, event):
         """Start it and come back."""
+        return self.start(context)
+
+    def start(self, context):
+        """Begin the work, and look after it from then on."""
         state = context.window_manager.monocell_work
         if state.title:
             self.report({"ERROR"}, f"{state.title} is still running: wait, or cancel it")

@@ -62,7 +62,7 @@ class OnPicture:
         self._intrinsics = bare_cell(scene).camera.intrinsics
         self._aiming, self._aimed = Aiming.of(scene, context.space_data), None
         self._shown_pixels = shown_pixels(scene) if self.settings.loupe else None
-        self.cursor, self._turned = None, False
+        self.cursor, self._turned, self._loupe = None, False, None
         self._follow(context, context.area, event)
         self._handle = bpy.types.SpaceView3D.draw_handler_add(
             self._draw, (context,), "WINDOW", "POST_PIXEL"
@@ -152,7 +152,7 @@ class OnPicture:
         from .drawing import WHITE, draw_crosses, draw_ring
 
         scale = context.preferences.system.ui_scale
-        aim = self.aim(context, context.area)
+        aim, self._loupe = self.aim(context, context.area), None
         if aim is None:
             draw_crosses([self.cursor], WHITE, scale)
             return ""
@@ -161,13 +161,26 @@ class OnPicture:
         draw_crosses(at, WHITE, scale)
         if aim.told:
             draw_ring(at[0], self.settings.active_color, scale)
-        if self._shown_pixels is not None:
-            from .loupe import Loupe
-
-            size = (context.region.width, context.region.height)
-            loupe = Loupe(self.cursor, size, self.settings.loupe_zoom, scale)
-            loupe.draw(self._shown_pixels, centre[0], lines, scale)
+        self.paint_loupe(context, centre[0], lines)
         return f"snapped to {aim.told}" if aim.told else ""
+
+    def paint_loupe(self, context, centre, lines):
+        """The picture's pixels round `centre` (2,) of the view, enlarged, with lines over them."""
+        if self._shown_pixels is None:
+            return
+        from .loupe import Loupe
+
+        scale, free = context.preferences.system.ui_scale, free_part(context.area, context.region)
+        loupe = Loupe(self.cursor, free, self.settings.loupe_zoom, scale)
+        self._loupe = loupe.box
+        loupe.draw(self._shown_pixels, centre, lines, scale)
+
+    def paint_words(self, context, rows):
+        """Words and their colours beside the cursor, where no sidebar and no loupe is."""
+        from .drawing import draw_words
+
+        scale, free = context.preferences.system.ui_scale, free_part(context.area, context.region)
+        draw_words(rows, self.cursor, free, scale, self._loupe)
 
     def tell(self, context):
         """Name the keys in the status bar."""

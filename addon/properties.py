@@ -16,6 +16,7 @@ from bpy.props import (
 from ..core.sighting import LEAST_RADIUS, MOST_RADIUS
 from .document import bare_cell
 from .inputs import SceneInputs
+from .lens_inputs import LensInputs
 from .object_fields import ObjectFields
 from .place_inputs import decimals
 from .sightings import edit_sighting
@@ -127,6 +128,7 @@ class SceneCell(bpy.types.PropertyGroup):
     folder: StringProperty(name="Folder that picture names start from")
     folder_beside: StringProperty(name="The same as seen from the .blend file when it was saved")
     path: StringProperty(name="Document this was read from or last written to")
+    outdated: StringProperty(name="Why objects have to be solved again; empty where they need not")
     shown_picture: StringProperty(name="Picture behind the camera view")
     camera: PointerProperty(type=bpy.types.Object, name="The cell's camera")
     collection: PointerProperty(type=bpy.types.Collection, name="The cell's objects")
@@ -153,7 +155,7 @@ class Work(bpy.types.PropertyGroup):
     picking: BoolProperty(name="Whether an object is being picked, and sightings are hidden")
 
 
-CLASSES = (SightingRow, ReferenceRow, SceneCell, SceneInputs, ObjectFields, Work)
+CLASSES = (SightingRow, ReferenceRow, SceneCell, SceneInputs, LensInputs, ObjectFields, Work)
 
 
 def register():
@@ -162,6 +164,7 @@ def register():
         bpy.utils.register_class(cls)
     bpy.types.Scene.monocell_cell = PointerProperty(type=SceneCell)
     bpy.types.Scene.monocell_inputs = PointerProperty(type=SceneInputs)
+    bpy.types.Scene.monocell_lens = PointerProperty(type=LensInputs)
     bpy.types.Scene.monocell_object = PointerProperty(type=ObjectFields)
     bpy.types.WindowManager.monocell_work = PointerProperty(type=Work)
 
@@ -170,6 +173,7 @@ def unregister():
     """Take them off again; what they hold stays in the file."""
     del bpy.types.WindowManager.monocell_work
     del bpy.types.Scene.monocell_object
+    del bpy.types.Scene.monocell_lens
     del bpy.types.Scene.monocell_inputs
     del bpy.types.Scene.monocell_cell
     for cls in reversed(CLASSES):

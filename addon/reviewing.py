@@ -72,7 +72,7 @@ class Reviewed(OnPicture):
 
     def paint(self, context, frame):
         """What is and what would be, and of the one under the cursor all that is known."""
-        from .drawing import LineBatch, draw_labels, draw_words
+        from .drawing import LineBatch, draw_labels
         from .offer_drawing import rows_of
 
         scale = context.preferences.system.ui_scale
@@ -84,11 +84,13 @@ class Reviewed(OnPicture):
         draw_labels(
             [(at, one.text, one.color) for at, one in zip(places, labels, strict=True)], scale
         )
-        at = self._pointed(context, context.area)
+        at, self._loupe = self._pointed(context, context.area), None
         if at is not None:
-            self._paint_loupe(context, frame, scale)
+            lines = [] if self._before else self._frames.near(self._offer, self.settings)
+            centre = frame.view_pixels([self.pixel(context, context.area)])[0]
+            self.paint_loupe(context, centre, lines)
             rows = rows_of(self._offer.candidates[at], settings(context).unit)
-            draw_words(rows, *self.cursor, (context.region.width, context.region.height), scale)
+            self.paint_words(context, rows)
 
     def keys(self):
         """What the status bar tells."""
@@ -102,17 +104,6 @@ class Reviewed(OnPicture):
     def _pointed(self, context, area):
         pixel = self.pixel(context, area)
         return None if pixel is None else self._offer.at(self._camera, pixel)
-
-    def _paint_loupe(self, context, frame, scale):
-        from .loupe import Loupe
-
-        pixel = self.pixel(context, context.area)
-        if self._shown_pixels is None or pixel is None:
-            return
-        size = (context.region.width, context.region.height)
-        loupe = Loupe(self.cursor, size, self.settings.loupe_zoom, scale)
-        lines = [] if self._before else self._frames.near(self._offer, self.settings)
-        loupe.draw(self._shown_pixels, frame.view_pixels([pixel])[0], lines, scale)
 
 
 def _can_look(context, event):
