@@ -35,6 +35,7 @@ class Align(WorksInBackground, NeedsPose, bpy.types.Operator):
         cell = read_scene(context.scene)
         names = None if self.everything else [name_of(context, self.name)]
         total = len(cell.objects) if names is None else 1
+        self._given = cell.objects
         return "Aligning", total, lambda watch: aligned(cell, names, watch)
 
     def finish(self, context, result):
@@ -42,7 +43,9 @@ class Align(WorksInBackground, NeedsPose, bpy.types.Operator):
         cell, aligned = result
         scene, found = context.scene, aligned.objects
         write_scene(scene, cell, stored_report(scene))
-        told = show_objects(scene, cell, [n for n, one in found.items() if one.believed])
+        # what stands on an aligned object has moved with it
+        pairs = zip(self._given, cell.objects, strict=True)
+        told = show_objects(scene, cell, [now.name for given, now in pairs if now is not given])
         moved = [one for one in found.values() if one.believed]
         far = max((one.moved_pixels for one in moved), default=0.0)
         self.report(
