@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import count
 
-from ..core.align.align_cell import align_cell
+from ..core.align.align_cell import align_cell, with_followers
 from ..core.align.propose import Proposal, propose
 from ..core.align.result import Aligned
 from ..core.cell import Cell
@@ -31,10 +31,8 @@ def aligned(
 
 
 def with_taken(cell: Cell, taken: Sequence[Primitive]) -> Cell:
-    """The cell with those objects that were taken, new or in place, its references following."""
-    by_name = {thing.name: thing for thing in taken}
-    kept = [by_name.pop(thing.name, thing) for thing in cell.objects]
-    return resolve_references(cell.with_objects([*kept, *by_name.values()]))[0]
+    """The cell with those objects that were taken, new or in place, and all that hangs on them."""
+    return resolve_references(with_followers(cell, taken))[0]
 
 
 def proposed(cell: Cell, on: str, watch: Callable[[str], None]) -> tuple[Proposal, ...]:

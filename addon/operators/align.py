@@ -52,10 +52,12 @@ class Align(Reviewed, WorksInBackground, NeedsPose, bpy.types.Operator):
 
         cell, aligned = result
         scene, found = context.scene, aligned.objects
-        names = [thing.name for thing in offer.taken]
-        write_scene(scene, with_taken(cell, offer.taken), stored_report(scene))
-        told = show_objects(scene, with_taken(cell, offer.taken), names)
-        moved = [found[name] for name in names]
+        was = {thing.name: thing for thing in cell.objects}
+        now = with_taken(cell, offer.taken)
+        write_scene(scene, now, stored_report(scene))
+        # what stands on an aligned object has moved with it
+        told = show_objects(scene, now, [t.name for t in now.objects if t is not was[t.name]])
+        moved = [found[thing.name] for thing in offer.taken]
         far = max((one.moved_pixels for one in moved), default=0.0)
         self.report(
             {"INFO"},
