@@ -156,7 +156,12 @@ class WorksInBackground:
         if scene.session_uid != self._scene or scene.monocell_cell.text != self._text:
             self.report({"ERROR"}, "The cell was changed meanwhile: start again for it as it is")
             return {"CANCELLED"}
-        return self.arrived(context, event, result)
+        try:
+            return self.arrived(context, event, result)
+        except MonocellError as error:
+            # an object that was edited out of its kind meanwhile
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
 
     def _end(self, context):
         context.window_manager.event_timer_remove(self._timer)

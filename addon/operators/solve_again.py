@@ -6,12 +6,12 @@ from typing import ClassVar
 import bpy
 from bpy.props import BoolProperty
 
+from ..background_job import WorksInBackground
 from ..document import read_scene, show_objects, stored_report, write_scene
 from ..polls import NeedsPose
-from ..refusals import refuses
 
 
-class SolveAgain(NeedsPose, bpy.types.Operator):
+class SolveAgain(WorksInBackground, NeedsPose, bpy.types.Operator):
     """Solve every sketch, and every object with picks again, for the camera of now"""
 
     bl_idname = "monocell.solve_again"
@@ -29,14 +29,25 @@ class SolveAgain(NeedsPose, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    @refuses
-    def execute(self, context):
-        """Solve, then rebuild what changed."""
+    def prepare(self, context):
+        """What is done in the background."""
         from ...core.modelling.solve import model
 
+        cell, joint = read_scene(context.scene), self.joint
+        sigma = context.scene.monocell_inputs.pick_sigma_pixels
+        self._before = _entries(cell)
+        return (
+            "Solving",
+            len(cell.things),
+            lambda watch: model(cell, sigma, joint=joint, watch=watch),
+        )
+
+    def finish(self, context, done):
+        """Rebuild what changed."""
         scene = context.scene
-        sigma = scene.monocell_inputs.pick_sigma_pixels
-        done = model(read_scene(scene), sigma, joint=self.joint)
+        if _entries(read_scene(scene)) != self._before:
+            self.report({"ERROR"}, "An object was changed meanwhile: solve again with it as it is")
+            return {"CANCELLED"}
         write_scene(scene, done.cell, stored_report(scene))
         told = [*done.warnings, *show_objects(scene, done.cell)]
         scene.monocell_cell.outdated = ""
@@ -44,3 +55,9 @@ class SolveAgain(NeedsPose, bpy.types.Operator):
         for warning in (*told, *(w for result in done.results for w in result.warnings)):
             self.report({"WARNING"}, warning)
         return {"FINISHED"}
+
+
+def _entries(cell):
+    from ...core.document.entries import object_entry
+
+    return [object_entry(thing) for thing in cell.objects]

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from ..arrays import positive
@@ -71,6 +71,7 @@ def model(
     *,
     joint: bool = False,
     held: Collection[str] = (),
+    watch: Callable[[str], None] | None = None,
 ) -> Modelling:
     """Solve every sketch of a cell, and again every object that has picks.
 
@@ -81,13 +82,14 @@ def model(
 
     The objects come first, in their order, then the solved sketches. Objects without picks stay as
     they are, but for those that other objects hold: they follow. Those named in `held` follow what
-    references hold them, too.
+    references hold them, too. `watch` is told each name as it is solved; what it raises ends the
+    work.
 
     Raises what `solve_sketch` raises; the cell is then as it was.
     """
     work = _Work.of(cell, _checked_sigma(pick_sigma_pixels))
     while work.waiting:
-        work.solve_level()
+        work.solve_level(watch)
     return work.finished(joint, held)
 
 
@@ -121,7 +123,7 @@ class _Work:
         bare = replace(cell, objects=still, sketches=tuple(sketches.values()))
         return _Work(bare, sigma, tuple(thing.name for thing in cell.things), sketches)
 
-    def solve_level(self) -> None:
+    def solve_level(self, watch: Callable[[str], None] | None) -> None:
         """Solve all sketches whose holders stand; of a circle, one without those that wait."""
         self.cell, _ = resolve_references(self.cell, self.sigma)
         references = self.references()
@@ -130,6 +132,8 @@ class _Work:
         camera, things = self.cell.standing_camera(), {t.name: t for t in self.cell.objects}
         solved = []
         for sketch in ready:
+            if watch is not None:
+                watch(sketch.name)
             chosen = choose(camera, sketch, references, things, self.sigma)
             whole = self.waiting.pop(sketch.name)
             thing = replace(chosen.fitted.thing, relations=whole.relations, on=whole.on)
