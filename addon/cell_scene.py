@@ -18,6 +18,7 @@ from ..core.errors import InvalidValue, PictureError
 from ..core.pose import Pose
 from .document import bare_cell, show_objects, write_scene
 from .preferences import settings
+from .waiting import waiting
 
 # how far a click may be off, in pixels, before the Blender camera counts as moved
 SAME_PIXELS = 0.05
@@ -32,14 +33,14 @@ LENGTH_UNITS = {"mm": "MILLIMETERS", "cm": "CENTIMETERS", "m": "METERS", "in": "
 def open_scene(context: Any, cell: Cell, title: str) -> Any:
     """Make a scene of `cell` and show it in the window; the user's own scenes are left alone.
 
-    The picture is read first, so that a refusal (PictureError, InvalidValue) changes nothing.
+    A refusal (PictureError, InvalidValue) changes nothing.
     Returns the scene.
     """
     from ..core.picture.pictures import read_picture
 
     name = shown_first(cell)
-    picture = None if name is None else read_picture(cell.path_of(name), cell.camera.intrinsics)
-    with _new_scene(title) as scene:
+    with waiting(context), _new_scene(title) as scene:
+        picture = None if name is None else read_picture(cell.path_of(name), cell.camera.intrinsics)
         write_scene(scene, cell)
         _measure_in(scene, settings(context).unit)
         put_camera(scene)

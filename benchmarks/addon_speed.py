@@ -111,12 +111,15 @@ class Timed:
         timed.setdefault(self.name, []).append(start.read())
 
 
+def viewport():
+    """The largest 3D viewport."""
+    areas = bpy.context.window_manager.windows[0].screen.areas
+    return max((a for a in areas if a.type == "VIEW_3D"), key=lambda a: a.width * a.height)
+
+
 def redrawn(clock, name, between=lambda i: None):
     clock.name = name
-    area = max(
-        (a for a in bpy.context.window_manager.windows[0].screen.areas if a.type == "VIEW_3D"),
-        key=lambda a: a.width * a.height,
-    )
+    area = viewport()
     for i in range(ROUNDS):
         between(i)
         area.tag_redraw()
@@ -131,7 +134,7 @@ def pick():
     plans, document = part("addon.pick_plans"), part("addon.document")
     sketch = next(s for s in document.bare_cell(scene).sketches if s.kind == "box")
     camera, plane = document.bare_cell(scene).camera, document.active_plane(scene)
-    aims = aiming.Aiming.of(scene)
+    aims = aiming.Aiming.of(scene, viewport().spaces.active)
     session = sessions.PickSession(plans.BOX, camera, plane)
     for pixel in sketch.picks["base"][:3]:
         session = session.picked(np.array(pixel))

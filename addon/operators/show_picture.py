@@ -9,6 +9,7 @@ from bpy.props import StringProperty
 from ..cell_scene import show_named_picture
 from ..polls import NeedsCell
 from ..refusals import refuses
+from ..waiting import waiting
 
 
 class ShowPicture(NeedsCell, bpy.types.Operator):
@@ -23,5 +24,6 @@ class ShowPicture(NeedsCell, bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Read the picture, then undistort and show it."""
-        show_named_picture(context.scene, self.picture)
+        with waiting(context):
+            show_named_picture(context.scene, self.picture)
         return {"FINISHED"}
