@@ -36,6 +36,7 @@ def _classes():
     from . import (
         drops,
         lists,
+        menus,
         operators,
         panel_camera,
         panel_model,
@@ -56,5 +57,6 @@ def _classes():
         panel_model.ReferenceMenu,
         panel_model.ModelPanel,
         panel_object.ObjectPanel,
+        menus.ExportMenu,
         panel_use.UsePanel,
     )
