@@ -33,6 +33,12 @@ def steps():
             found["refused"][ending] = str(error)
     found["scene"] = bpy.context.scene.name
     yield PAUSE
+    window, area, _ = view()
+    sidebar = next(region for region in area.regions if region.type == "UI")
+    with bpy.context.temp_override(window=window, area=area, region=sidebar):
+        for _ in range(40):
+            bpy.ops.view2d.scroll_down()
+    yield from shot("0_sidebar")
     in_view(bpy.ops.wm.call_menu, name="MONOCELL_MT_export")
     yield from shot("1_menu")
     press("ESC")
