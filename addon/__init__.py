@@ -38,6 +38,7 @@ def _classes():
     from . import (
         drops,
         lists,
+        menus,
         operators,
         panel_camera,
         panel_model,
@@ -59,5 +60,6 @@ def _classes():
         panel_model.ReferenceMenu,
         panel_model.ModelPanel,
         panel_object.ObjectPanel,
+        menus.ExportMenu,
         panel_use.UsePanel,
     )
