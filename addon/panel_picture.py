@@ -8,9 +8,11 @@ from .operators.find_pictures import FindPictures
 from .operators.look_through import LookThrough
 from .operators.open_cell import OpenCell
 from .operators.open_picture import OpenPicture
-from .operators.open_sample import OpenSample
+from .operators.open_sample import SAMPLES, OpenSample
 from .panel_parts import CellPanel, camera_inputs, next_thing, numbers, standing
 from .steps import picture_step
+
+SAMPLE_ICONS = {"STACK": "OUTLINER_OB_CAMERA", "TABLE": "FILE_3D"}
 
 
 class PicturePanel(CellPanel, bpy.types.Panel):
@@ -35,7 +37,8 @@ class PicturePanel(CellPanel, bpy.types.Panel):
 
 def _draw_start(layout, inputs):
     column = layout.column(align=True)
-    column.operator(OpenSample.bl_idname, icon="OUTLINER_OB_CAMERA")
+    for name, label, _ in SAMPLES:
+        column.operator(OpenSample.bl_idname, text=label, icon=SAMPLE_ICONS[name]).sample = name
     column.operator(OpenCell.bl_idname, icon="FILE_FOLDER")
     layout.separator(type="LINE")
     layout.prop(inputs, "picture", text="", placeholder="Picture")

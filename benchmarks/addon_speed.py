@@ -69,7 +69,7 @@ def register_anew():
 
 
 def calibrate():
-    bpy.ops.monocell.open_sample()
+    bpy.ops.monocell.open_sample(sample="TABLE")
     bpy.ops.monocell.calibrate()
     start = Clock.started()
     bpy.ops.monocell.calibrate()
