@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
 from ..cell import Cell
@@ -35,15 +35,30 @@ def align_cell(
     held = [_held_by_faces(thing, faces) for thing in cell.objects]
     camera, references = cell.standing_camera(), cell.placed_references
     aligned = align(held, camera, picture_bgr, references, names, reach_pixels, watch)
-    believed = [name for name, one in aligned.objects.items() if one.believed]
-    known = {reference.name: reference for reference in references}
-    things = followed(camera, known, aligned.things, believed)
-    kept = tuple(
-        given if now is was else _held_as(now, given)
-        for given, was, now in zip(cell.objects, held, things, strict=True)
+    given = {thing.name: thing for thing in cell.objects}
+    moved = with_followers(
+        cell, [_held_as(o.thing, given[name]) for name, o in aligned.objects.items() if o.believed]
     )
-    told = _told(aligned.objects, kept)
-    return cell.with_objects(kept), Aligned(kept, told, aligned.warnings)
+    told = _told(aligned.objects, moved.objects)
+    return moved, Aligned(moved.objects, told, aligned.warnings)
+
+
+def with_followers(cell: Cell, things: Iterable[Primitive]) -> Cell:
+    """The cell with `things`, new or in place of their namesakes, and what stands on them.
+
+    What stands on or hangs on an object goes with it, by as little as keeps its relations; all
+    other objects are the same as before. The references stay as they were: resolve them again.
+    Raises NotConverged for relations that contradict each other.
+    """
+    by_name = {thing.name: thing for thing in things}
+    kept = [by_name.pop(thing.name, thing) for thing in cell.objects]
+    given = (*kept, *by_name.values())
+    faces = _faces(cell)
+    held = [_held_by_faces(thing, faces) for thing in given]
+    known = {reference.name: reference for reference in cell.placed_references}
+    now = followed(cell.standing_camera(), known, held, ())
+    pairs = zip(given, held, now, strict=True)
+    return cell.with_objects(t if n is h else _held_as(n, t) for t, h, n in pairs)
 
 
 def _faces(cell: Cell) -> dict[str, str]:

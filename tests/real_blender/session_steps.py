@@ -17,8 +17,10 @@ from window_user import (
     large_view,
     made_active,
     renamed,
+    reviewed,
     scrolled,
     stored,
+    typed,
     worked,
 )
 
@@ -99,12 +101,17 @@ def block_undone_and_redone():
 
 
 def all_aligned():
-    """All three onto the picture's edges; what came of it is taken as it is."""
+    """All three onto the picture's edges: what would move is shown, then taken by Enter."""
     in_view(bpy.ops.monocell.align, "INVOKE_DEFAULT", everything=True)
+    yield from reviewed()
+    move(job["carton_top"])
+    yield from shot("7_review")
+    yield from typed(("RET",), job["carton_top"])
     yield from worked()
+    found["left_in_review"] = bpy.context.window_manager.monocell_work.reviewing
     yield from made_active("carton")
     yield from scrolled("WHEELDOWNMOUSE")
-    yield from shot("7_aligned")
+    yield from shot("8_aligned")
     kept("aligned")
 
 
@@ -116,7 +123,7 @@ def all_textured():
     space = view_space()
     space.shading.type = "MATERIAL"
     yield 2.0
-    yield from shot("8_textured")
+    yield from shot("9_textured")
 
 
 def exported():
@@ -126,7 +133,7 @@ def exported():
     kept("saved")
     found["left_over"] = handlers()
     view_space().region_3d.view_perspective = "PERSP"
-    yield from shot("9_around")
+    yield from shot("9_used")
 
 
 def begun(verb, pixel):

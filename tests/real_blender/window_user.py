@@ -36,6 +36,17 @@ def worked(seconds=120.0):
     yield from settle()
 
 
+def reviewed(seconds=120.0):
+    """Wait until what was found is shown, to be taken or left."""
+    yield from worked(seconds)
+    while not bpy.context.window_manager.monocell_work.reviewing:
+        if seconds < 0:
+            raise TimeoutError("no review was shown: nothing was found, or nothing believed")
+        seconds -= PAUSE
+        yield PAUSE
+    yield from settle()
+
+
 def large_view():
     """The view as large as the window, as by Ctrl Space, with its sidebar."""
     in_view(bpy.ops.screen.screen_full_area)
