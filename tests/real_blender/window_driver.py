@@ -154,4 +154,5 @@ def run(steps):
 
     bpy.context.preferences.view.show_splash = False
     bpy.types.SpaceView3D.draw_handler_add(lambda: drawn.append(True), (), "WINDOW", "POST_PIXEL")
-    bpy.app.timers.register(tick, first_interval=2.0)
+    # a file that is loaded on the way does not end it
+    bpy.app.timers.register(tick, first_interval=2.0, persistent=True)
