@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.arrays import Array
+from .beside_cursor import Box, words_box
 
 Floats = NDArray[np.float32]
 Color = tuple[float, float, float, float]
@@ -106,9 +107,13 @@ def draw_ring(point: Array, color: Color, scale: float) -> None:
 
 
 def draw_words(
-    rows: Sequence[tuple[str, Color]], x: float, y: float, size: tuple[int, int], scale: float
+    rows: Sequence[tuple[str, Color]],
+    cursor: tuple[float, float],
+    free: Box,
+    scale: float,
+    loupe: Box | None = None,
 ) -> None:
-    """Write rows of text on a dark plate near (x, y), moved so that it stays in the region."""
+    """Write rows of text on a dark plate near the cursor, in the `free` part and off the loupe."""
     import blf
 
     rows = [row for row in rows if row[0]]
@@ -118,9 +123,8 @@ def draw_words(
     line, pad = 1.45 * TEXT_SIZE * scale, 6.0 * scale
     width = max(blf.dimensions(0, text)[0] for text, _ in rows) + 2 * pad
     height = line * len(rows) + pad
-    left = min(x + 18 * scale, size[0] - width - pad)
-    top = y - 18 * scale if y - 18 * scale - height > 0 else y + 18 * scale + height
-    _plate(left, top - height, left + width, top)
+    left, bottom, right, top = words_box((width, height), cursor, free, scale, loupe)
+    _plate(left, bottom, right, top)
     for i, (text, color) in enumerate(rows):
         blf.position(0, left + pad, top - line * (i + 1) + 0.22 * line, 0)
         blf.color(0, *color)

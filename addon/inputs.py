@@ -33,6 +33,7 @@ class SceneInputs(bpy.types.PropertyGroup):
             ),
             ("PIXELS", "Pixels", "Focal lengths and principal point in pixels, typed"),
             ("ANGLE", "Angle", "The horizontal field of view in degrees, as data sheets give it"),
+            ("BOARD", "Board", "Estimated from pictures of a chessboard or ChArUco board"),
         ),
     )
     camera: StringProperty(

@@ -32,24 +32,25 @@ class Overlay:
         scene, space = context.scene, context.space_data
         if not has_cell(scene) or not space.overlay.show_overlays:
             return
-        from .cell_scene import looks_through
+        from .camera_view import looks_through, view_of
 
-        if looks_through(scene, space):
-            self._draw_over(context, scene, space)
+        view = view_of(space, context.region)
+        if looks_through(scene, space, view):
+            self._draw_over(context, scene, view)
 
-    def _draw_over(self, context: Any, scene: Any, space: Any) -> None:
+    def _draw_over(self, context: Any, scene: Any, view: Any) -> None:
         import gpu
 
         from .picture_frame import picture_frame
 
         intrinsics = bare_cell(scene).camera.intrinsics
-        frame = picture_frame(scene, context.region, space, intrinsics)
+        frame = picture_frame(scene, context.region, view, intrinsics)
         (x, y), (right, below) = frame.region_points([[0.0, 0.0], [1.0, 1.0]])
         look = settings(context)
-        batches = [
-            *self._grid_batches(scene, look),
-            *self._object_batches(context, scene, look),
-        ]
+        batches = list(self._grid_batches(scene, look))
+        # what would change is drawn instead
+        if not context.window_manager.monocell_work.reviewing:
+            batches += self._object_batches(context, scene, look)
         # sightings would lie over what is picked
         picking = context.window_manager.monocell_work.picking
         batches += [] if picking else self._ball_batches(scene, look)
@@ -105,7 +106,7 @@ class Overlay:
         before = self._lines if self._common == common else {}
         self._lines, self._common = {}, common
         for ob in scene.objects:
-            if not is_modelled(ob) or not ob.visible_get():
+            if not is_modelled(ob) or not ob.visible_get(viewport=context.space_data):
                 continue
             key = _object_key(ob, ob == active and ob.select_get())
             held = before.get(ob.name)

@@ -22,6 +22,7 @@ from ..core.picture.wireframe import finite_parts, wireframe
 from ..core.primitives import Primitive
 from ..core.sighting import PointSighting, SphereSighting
 from .drawing import GREY, HALO, WHITE, YELLOW, Color, Floats, ends_of
+from .lengths import length
 from .pick_handles import view_pixels
 from .plane_grid import PlaneGrid
 from .report import Report
@@ -107,7 +108,7 @@ def sighting_labels(
             )
         yield Label(corner, told, sighting_color(report, i, sighting.use, settings))
     for k, place in enumerate(report.advice if report is not None else ()):
-        told = f"next {k + 1}: {place.sigma_millimetres:.2f} mm"
+        told = f"next {k + 1}: {length(1e-3 * place.sigma_millimetres, settings.unit, finer=1)}"
         yield Label(_view_pixels(cell, [place.pixel])[0], told, settings.advice_color)
 
 

@@ -16,6 +16,7 @@ from bpy.props import (
 from ..core.sighting import LEAST_RADIUS, MOST_RADIUS
 from .document import bare_cell
 from .inputs import SceneInputs
+from .lens_inputs import LensInputs
 from .object_fields import ObjectFields
 from .place_inputs import decimals
 from .sightings import edit_sighting
@@ -103,11 +104,11 @@ class ReferenceRow(bpy.types.PropertyGroup):
 
 def _active_index(cell):
     active = bpy.context.view_layer.objects.active
-    return cell.collection.objects.find(active.name) if active and cell.collection else -1
+    return cell.id_data.objects.find(active.name) if active else -1
 
 
 def _activate(cell, index):
-    ob = cell.collection.objects[index]
+    ob = cell.id_data.objects[index]
     for other in bpy.context.selected_objects:
         other.select_set(False)
     # hidden and excluded objects can't be selected, and are listed all the same
@@ -125,7 +126,9 @@ class SceneCell(bpy.types.PropertyGroup):
     text: StringProperty(name="Cell document without objects, JSON")
     report: StringProperty(name="Last calibration, JSON")
     folder: StringProperty(name="Folder that picture names start from")
+    folder_beside: StringProperty(name="The same as seen from the .blend file when it was saved")
     path: StringProperty(name="Document this was read from or last written to")
+    outdated: StringProperty(name="Why objects have to be solved again; empty where they need not")
     shown_picture: StringProperty(name="Picture behind the camera view")
     camera: PointerProperty(type=bpy.types.Object, name="The cell's camera")
     collection: PointerProperty(type=bpy.types.Collection, name="The cell's objects")
@@ -148,10 +151,11 @@ class Work(bpy.types.PropertyGroup):
     name: StringProperty(name="What it has come to")
     share: FloatProperty(name="How much is done", min=0.0, max=1.0)
     cancel: BoolProperty(name="Whether it was told to end")
+    reviewing: BoolProperty(name="Whether what would change is shown, and the model is not")
     picking: BoolProperty(name="Whether an object is being picked, and sightings are hidden")
 
 
-CLASSES = (SightingRow, ReferenceRow, SceneCell, SceneInputs, ObjectFields, Work)
+CLASSES = (SightingRow, ReferenceRow, SceneCell, SceneInputs, LensInputs, ObjectFields, Work)
 
 
 def register():
@@ -160,6 +164,7 @@ def register():
         bpy.utils.register_class(cls)
     bpy.types.Scene.monocell_cell = PointerProperty(type=SceneCell)
     bpy.types.Scene.monocell_inputs = PointerProperty(type=SceneInputs)
+    bpy.types.Scene.monocell_lens = PointerProperty(type=LensInputs)
     bpy.types.Scene.monocell_object = PointerProperty(type=ObjectFields)
     bpy.types.WindowManager.monocell_work = PointerProperty(type=Work)
 
@@ -168,6 +173,7 @@ def unregister():
     """Take them off again; what they hold stays in the file."""
     del bpy.types.WindowManager.monocell_work
     del bpy.types.Scene.monocell_object
+    del bpy.types.Scene.monocell_lens
     del bpy.types.Scene.monocell_inputs
     del bpy.types.Scene.monocell_cell
     for cls in reversed(CLASSES):

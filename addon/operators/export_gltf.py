@@ -8,13 +8,13 @@ from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ..cell_scene import title_of
-from ..document import read_scene
+from ..document import doubts_of, read_scene
 from ..polls import NeedsCell
 from ..refusals import refuses
 
 
 class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):
-    """Export objects and camera as a glTF file with exact sizes for robot programs"""
+    """Export all objects, hidden ones too, and the camera as a glTF file with exact sizes"""
 
     bl_idname = "monocell.export_gltf"
     bl_label = "Export Cell as glTF"
@@ -39,4 +39,6 @@ class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):
         cell = read_scene(context.scene)
         export_gltf(cell, path)
         self.report({"INFO"}, f"{path}: {len(cell.objects)} objects exported")
+        for doubt in doubts_of(context.scene):
+            self.report({"WARNING"}, doubt)
         return {"FINISHED"}

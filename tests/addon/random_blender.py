@@ -138,9 +138,7 @@ class BlenderMoves:
     does_leave_mode.often = 8
 
     def does_add_foreign(self):
-        add = self.one_of(
-            [self.bpy.ops.mesh.primitive_cube_add, self.bpy.ops.object.camera_add]
-        )
+        add = self.one_of([self.bpy.ops.mesh.primitive_cube_add, self.bpy.ops.object.camera_add])
         self.blender(add)
 
     does_add_foreign.often = 2

@@ -129,7 +129,9 @@ class VerbMoves:
 
     def does_set_preference(self):
         name = self.one_of(LOOKS)
-        preferences = self.bpy.context.preferences.addons["bl_ext.user_default.monocell"].preferences
+        preferences = self.bpy.context.preferences.addons[
+            "bl_ext.user_default.monocell"
+        ].preferences
         setattr(preferences, name, self.one_of(LOOKS[name]))
 
     does_set_preference.often = 1

@@ -78,7 +78,11 @@ def _check_objects(bpy, module, cell):
 
 def _check_overlay(bpy, module):
     """All that would be drawn can be computed, and is finite."""
-    scene, document, lines = bpy.context.scene, module("addon.document"), module("addon.overlay_lines")
+    scene, document, lines = (
+        bpy.context.scene,
+        module("addon.document"),
+        module("addon.overlay_lines"),
+    )
     cell, report = document.bare_cell(scene), document.stored_report(scene)
     stored = scene.monocell_cell
     look = module("addon.preferences").settings(bpy.context)

@@ -43,7 +43,7 @@ REPORT = Report(
         seen("used", CENTRES[3]),
         seen("used", CENTRES[4]),
     ),
-    "0.21 mm on floor",
+    "floor",
     (AdvisedPlace((0.4, 0.0, 0.2), (400.0, 300.0), 20.0, 0.19),),
 )
 

@@ -55,7 +55,9 @@ def go(new_hand, steps):
         log = hand.folder / "fewest.txt"
         log.write_text("".join(f"{step}\n" for step in fewest))
         told = walked(new_hand, fewest)[1] or failure
-        pytest.fail(f"{log.read_text()}MONOCELL_REPLAY={log} does this again:\n{told}", pytrace=False)
+        pytest.fail(
+            f"{log.read_text()}MONOCELL_REPLAY={log} does this again:\n{told}", pytrace=False
+        )
     return hand
 
 
@@ -68,4 +70,3 @@ def test_whatever_is_done_the_document_stays_valid(new_hand, seed):
     # a session that is mostly refused proves little
     assert hand.checked > STEPS / 3
     assert hand.refusals
-
