@@ -4,6 +4,7 @@
 What is done is written down before it is done, so that a crash tells what led to it.
 """
 
+import importlib
 import random
 import sys
 from pathlib import Path
@@ -316,13 +317,19 @@ def calm():
 
 
 def document(name):
-    """Where the document was written to, or why it was not."""
+    """Where the document was written to, or why it was not; the scene's own file stays its own."""
     path = out / f"check_{name}.cell.json"
     try:
-        in_view(bpy.ops.monocell.save_cell, "EXEC_DEFAULT", filepath=str(path))
-    except RuntimeError as refusal:
+        module("core.document.cell_file").write_cell(
+            module("addon.document").read_scene(bpy.context.scene), path
+        )
+    except module("core.errors").MonocellError as refusal:
         return str(refusal)
     return path.name
+
+
+def module(name):
+    return importlib.import_module(f"bl_ext.user_default.monocell.{name}")
 
 
 def steps():
