@@ -12,7 +12,19 @@ from pathlib import Path
 import bpy
 
 sys.path.insert(0, str(Path(__file__).parent))
-from window_driver import event, found, handlers, in_view, job, out, place_of, press, run, view
+from window_driver import (
+    NoView,
+    event,
+    found,
+    handlers,
+    in_view,
+    job,
+    out,
+    place_of,
+    press,
+    run,
+    view,
+)
 
 PAUSE = 0.06
 CALM_EVERY = 30
@@ -60,8 +72,11 @@ def count_handlers():
 
 
 def has_view():
-    window = bpy.context.window_manager.windows[0]
-    return any(area.type == "VIEW_3D" for area in window.screen.areas)
+    try:
+        view()
+    except NoView:
+        return False
+    return True
 
 
 def call(operator, *arguments, **properties):
@@ -349,7 +364,10 @@ def steps():
             continue
         chosen = rng.choices(list(MOVES), list(MOVES.values()))[0]
         note(f"{i} {chosen.__name__}")
-        yield from chosen()
+        try:
+            yield from chosen()
+        except NoView:
+            note("  the view is gone")
         if i % CALM_EVERY == CALM_EVERY - 1:
             yield from calm()
     yield from calm()
