@@ -9,7 +9,7 @@ from .operators.look_through import LookThrough
 from .operators.open_cell import OpenCell
 from .operators.open_picture import OpenPicture
 from .operators.open_sample import OpenSample
-from .panel_parts import CellPanel, camera_inputs, next_thing, numbers, standing
+from .panel_parts import CellPanel, camera_inputs, next_thing, numbers, paragraph, standing
 from .steps import picture_step
 
 
@@ -28,6 +28,8 @@ class PicturePanel(CellPanel, bpy.types.Panel):
         layout, scene = self.layout, context.scene
         next_thing(layout, context, picture_step(scene))
         if has_cell(scene):
+            if scene.monocell_cell.shown_told:
+                paragraph(layout, context, scene.monocell_cell.shown_told, "INFO")
             _draw_opened(layout, scene)
         else:
             _draw_start(layout, scene.monocell_inputs)

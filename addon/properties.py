@@ -123,6 +123,7 @@ class SceneCell(bpy.types.PropertyGroup):
     folder_beside: StringProperty(name="The same as seen from the .blend file when it was saved")
     path: StringProperty(name="Document this was read from or last written to")
     shown_picture: StringProperty(name="Picture behind the camera view")
+    shown_told: StringProperty(name="What is to say of that picture")
     camera: PointerProperty(type=bpy.types.Object, name="The cell's camera")
     collection: PointerProperty(type=bpy.types.Collection, name="The cell's objects")
     sightings: CollectionProperty(type=SightingRow)
