@@ -197,7 +197,7 @@ def second_window():
     yield from picking()
     first = view()[0]
     with bpy.context.temp_override(window=first):
-        bpy.ops.wm.window_new()
+        bpy.ops.wm.window_new_main()
     yield 1.0
     second = next(w for w in bpy.context.window_manager.windows if w != first)
     second.scene = bpy.data.scenes["another"]
