@@ -106,7 +106,7 @@ def draw_ring(point: Array, color: Color, scale: float) -> None:
 
 
 def draw_words(
-    rows: Sequence[tuple[str, Color]], x: float, y: float, size: tuple[int, int], scale: float
+    rows: Sequence[tuple[str, Color]], x: float, y: float, size: tuple[float, float], scale: float
 ) -> None:
     """Write rows of text on a dark plate near (x, y), moved so that it stays in the region."""
     import blf

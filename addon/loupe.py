@@ -33,7 +33,7 @@ class Loupe:
     """Where the loupe stands in the region, and what it maps to it."""
 
     def __init__(
-        self, cursor: tuple[float, float], size: tuple[int, int], zoom: int, scale: float
+        self, cursor: tuple[float, float], size: tuple[float, float], zoom: int, scale: float
     ) -> None:
         self.zoom = zoom * scale
         side, away = ACROSS * self.zoom, AWAY * scale

@@ -5,7 +5,7 @@ import bpy
 
 from .camera_view import camera_region, picking_region, region_under, view_of
 from .document import bare_cell
-from .picture_frame import free_part, picture_frame
+from .picture_frame import free_part, free_size, picture_frame
 from .preferences import settings
 
 # what moves the view goes to Blender, so that zoom and pan work as ever
@@ -157,7 +157,7 @@ class OnPicture:
         if self._shown_pixels is not None:
             from .loupe import Loupe
 
-            size = (context.region.width, context.region.height)
+            size = free_size(context)
             loupe = Loupe(self.cursor, size, self.settings.loupe_zoom, scale)
             loupe.draw(self._shown_pixels, centre[0], lines, scale)
         return f"snapped to {aim.told}" if aim.told else ""

@@ -17,7 +17,7 @@ from .drawing import (
     draw_words,
 )
 from .pick_session import PickSession, Preview
-from .picture_frame import PictureFrame
+from .picture_frame import PictureFrame, free_size
 from .preferences import Settings
 
 HIDDEN_SHARE = 0.45
@@ -51,7 +51,7 @@ def draw_prompt(
         (snapped, WHITE),
         (preview.complaint, ORANGE),
     ]
-    size = (context.region.width, context.region.height)
+    size = free_size(context)
     draw_words(rows, *cursor, size, context.preferences.system.ui_scale)
 
 
@@ -69,7 +69,7 @@ def draw_handles(
             draw_ring(at, look.active_color, scale)
     if held is None or aim is None:
         rows = [("drag a pick", WHITE)]
-        draw_words(rows, *operator.cursor, (context.region.width, context.region.height), scale)
+        draw_words(rows, *operator.cursor, free_size(context), scale)
         return
     preview = handles.moved(held, aim.pixel)
     lines = [frame.region_points(line.pixels) for line in preview.lines if line.visible]
@@ -84,4 +84,4 @@ def draw_handles(
         (snapped, WHITE),
         (preview.complaint, ORANGE),
     ]
-    draw_words(rows, *operator.cursor, (context.region.width, context.region.height), scale)
+    draw_words(rows, *operator.cursor, free_size(context), scale)

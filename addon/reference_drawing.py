@@ -13,7 +13,7 @@ from ..core.arrays import Array
 from ..core.camera import Camera
 from ..core.picture.wireframe import finite_parts
 from .drawing import ORANGE, WHITE, YELLOW, draw_crosses, draw_lines, draw_words
-from .picture_frame import PictureFrame
+from .picture_frame import PictureFrame, free_size
 
 LINE_SAMPLES = 24
 
@@ -25,7 +25,7 @@ def draw_shown(context: Any, frame: PictureFrame, camera: Camera, shown: Any, cu
     if shown is not None:
         words = shown.path
         draw_lines(_in_region(frame, camera, shown.line), ORANGE, 3.5, scale)
-    size = (context.region.width, context.region.height)
+    size = free_size(context)
     draw_words([(words, ORANGE if shown is not None else WHITE)], *cursor, size, scale)
 
 
@@ -42,7 +42,7 @@ def draw_upright(context: Any, frame: PictureFrame, operator: Any) -> None:
     draw_crosses(points, YELLOW, scale)
     snapped = operator.paint_aim(context, frame)
     rows = [(operator.keys()[0][1], WHITE), (snapped, WHITE)]
-    draw_words(rows, *operator.cursor, (context.region.width, context.region.height), scale)
+    draw_words(rows, *operator.cursor, free_size(context), scale)
 
 
 def _in_region(frame: PictureFrame, camera: Camera, line: Array) -> list[Array]:
