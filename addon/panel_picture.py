@@ -13,7 +13,7 @@ from .operators.open_cell import OpenCell
 from .operators.open_picture import OpenPicture
 from .operators.open_sample import SAMPLES, OpenSample
 from .panel_lens import camera_inputs
-from .panel_parts import CellPanel, next_thing, numbers, standing
+from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
 from .steps import picture_step
 
 SAMPLE_ICONS = {"STACK": "OUTLINER_OB_CAMERA", "TABLE": "FILE_3D"}
@@ -34,6 +34,8 @@ class PicturePanel(CellPanel, bpy.types.Panel):
         layout, scene = self.layout, context.scene
         next_thing(layout, context, picture_step(scene))
         if has_cell(scene):
+            if scene.monocell_cell.shown_told:
+                paragraph(layout, context, scene.monocell_cell.shown_told, "INFO")
             _draw_opened(layout, scene)
         else:
             _draw_start(layout, context)

@@ -130,6 +130,7 @@ class SceneCell(bpy.types.PropertyGroup):
     path: StringProperty(name="Document this was read from or last written to")
     outdated: StringProperty(name="Why objects have to be solved again; empty where they need not")
     shown_picture: StringProperty(name="Picture behind the camera view")
+    shown_told: StringProperty(name="What is to say of that picture")
     camera: PointerProperty(type=bpy.types.Object, name="The cell's camera")
     collection: PointerProperty(type=bpy.types.Collection, name="The cell's objects")
     sightings: CollectionProperty(type=SightingRow)

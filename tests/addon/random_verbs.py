@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import bench_cell
-import numpy as np
 from monocell.core.relation import RELATIONS
 
 TEXTS = ("", "a b", "1 2", "{}", "[[1]]", "0.3 0.1 0.2", "x,y,z\n0.3,0.1,0.2\n0.1,0.1,0.2")

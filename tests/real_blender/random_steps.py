@@ -285,10 +285,29 @@ def open_document():
 
 
 MOVES = {
-    **{click: 26, move: 8, drag: 5, pan: 2, wheel: 5, key: 14, undo_key: 6, undo: 4, pick: 20},
-    **{draw_box: 5, dialog: 3, background: 5, at_once: 4, tool: 3, sidebar: 2, leave_view: 4},
-    **{maximise: 2, another_editor: 1, workspace: 1, scene: 1, change_object: 5},
-    **{save_and_open: 1, open_document: 1},
+    click: 26,
+    move: 8,
+    drag: 5,
+    pan: 2,
+    wheel: 5,
+    key: 14,
+    undo_key: 6,
+    undo: 4,
+    pick: 20,
+    draw_box: 5,
+    dialog: 3,
+    background: 5,
+    at_once: 4,
+    tool: 3,
+    sidebar: 2,
+    leave_view: 4,
+    maximise: 2,
+    another_editor: 1,
+    workspace: 1,
+    scene: 1,
+    change_object: 5,
+    save_and_open: 1,
+    open_document: 1,
 }
 
 

@@ -32,7 +32,8 @@ def view():
     if not areas:
         raise NoView
     area = max(areas, key=lambda area: area.width * area.height)
-    region = next(r for r in area.regions if r.type == "WINDOW")
+    # in a quad view the last one turns freely
+    region = [r for r in area.regions if r.type == "WINDOW"][-1]
     return window, area, region
 
 
@@ -52,8 +53,8 @@ def show_sidebar():
 
 def place_of(pixel):
     """Where an undistorted pixel lies in the window."""
-    _, area, region = view()
-    scene = bpy.context.scene
+    window, area, region = view()
+    scene = window.scene
     camera = scene.camera
     corners = [
         view3d_utils.location_3d_to_region_2d(
