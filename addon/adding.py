@@ -10,15 +10,14 @@ from .polls import NeedsPose
 from .refusals import refuses
 
 
-def way_property(kind, usual=None):
-    """The choice of how a kind is picked and held, the first way or the `usual` one offered."""
+def way_property(kind):
+    """The choice of how a kind is picked and held, the first way offered."""
     ways = [(name, label, meaning) for name, label, meaning, _ in WAYS[kind]]
-    default = usual or ways[0][0]
     return EnumProperty(
         name="Way",
         description="How it is picked and held",
         items=ways,
-        default=default,
+        default=ways[0][0],
         options={"SKIP_SAVE"},
     )
 
