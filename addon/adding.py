@@ -3,6 +3,7 @@
 
 from bpy.props import EnumProperty, StringProperty
 
+from .fields import new_name_property
 from .modelled import add_modelled
 from .pick_plans import WAYS
 from .picking import PicksOnPicture
@@ -25,9 +26,7 @@ def way_property(kind):
 class AddsPicked(PicksOnPicture, NeedsPose):
     """An operator of a `kind` with a property `way`; scripts give `picks` as JSON."""
 
-    name: StringProperty(
-        name="Name", description="Empty: the first free one", options={"SKIP_SAVE"}
-    )
+    name: new_name_property("object")
     on: StringProperty(
         name="On",
         description="The reference it stands on, or a face of an object as crate.top; empty: the "

@@ -4,11 +4,11 @@
 from typing import ClassVar
 
 import bpy
-from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ..cell_scene import title_of
 from ..document import read_scene
+from ..fields import endings_property
 from ..polls import NeedsCell
 from ..refusals import refuses
 
@@ -21,7 +21,7 @@ class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):
     bl_options: ClassVar = {"REGISTER"}
 
     filename_ext = ".glb"
-    filter_glob: StringProperty(default="*.glb", options={"HIDDEN"})
+    filter_glob: endings_property("*.glb")
 
     def invoke(self, context, event):
         """Offer a name beside the document."""
