@@ -56,10 +56,13 @@ def _classes():
         panel_picture.PicturePanel,
         panel_picture.LensPanel,
         panel_camera.CameraPanel,
+        panel_camera.AccuracyPanel,
         panel_camera.SightingsPanel,
         panel_model.ReferenceMenu,
         panel_model.ModelPanel,
         panel_object.ObjectPanel,
+        panel_model.ReferencesPanel,
+        panel_model.AllObjectsPanel,
         menus.ExportMenu,
         panel_use.UsePanel,
     )

@@ -5,12 +5,13 @@ from pathlib import Path
 from typing import ClassVar
 
 import bpy
-from bpy.props import EnumProperty, StringProperty
+from bpy.props import EnumProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ...core.formats.endings import FORMATS, known_ending
 from ..cell_scene import title_of
 from ..document import doubts_of, read_scene
+from ..fields import endings_property
 from ..polls import NeedsCell
 from ..refusals import refuses
 
@@ -41,7 +42,7 @@ class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):
         default="GLB",
         update=_show_files_of,
     )
-    filter_glob: StringProperty(default="*.glb", options={"HIDDEN"})
+    filter_glob: endings_property("*.glb")
 
     @property
     def filename_ext(self):
