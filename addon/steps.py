@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import PurePath
 from typing import Any, Literal
 
 from .document import bare_cell, has_cell, stored_report
@@ -30,8 +29,10 @@ def picture_step(scene: Any) -> Step:
     if not shown:
         return Step("doubt", "The document names no picture: add sightings with theirs.")
     cell = bare_cell(scene)
-    if not cell.path_of(shown).is_file():
-        return Step("doubt", f"{PurePath(shown).name} is no longer in its folder.")
+    for name in (shown, *_active_picture(scene)):
+        path = cell.path_of(name)
+        if not path.is_file():
+            return Step("doubt", f"{path.name} is no longer in {path.parent}. Is it elsewhere?")
     return Step("done")
 
 
@@ -48,7 +49,7 @@ def camera_step(scene: Any) -> Step:
         return Step("done", "The document brought the camera's pose.")
     if report.changed:
         return Step("doubt", "Sightings changed since: calibrate again.")
-    if not report.verdict:
+    if report.searched or not report.verdict:
         return Step("next", "Balls were found again: calibrate to use them.")
     return _judged(report)
 
@@ -60,6 +61,8 @@ def model_step(scene: Any) -> Step:
     cell = bare_cell(scene)
     if cell.camera.camera_from_world is None:
         return Step("waiting", "Calibrate first: a picture has no scale without it.")
+    if scene.monocell_cell.outdated and count_objects(scene):
+        return Step("doubt", scene.monocell_cell.outdated)
     if cell.sketches:
         count = len(cell.sketches)
         return Step("next", f"{count} picked in the document: press Solve All.")
@@ -79,10 +82,23 @@ def use_step(scene: Any) -> Step:
     return Step("next", f"{said} to export.")
 
 
+def is_posed(scene: Any) -> bool:
+    """Whether the scene has a cell whose camera has a pose."""
+    return has_cell(scene) and bare_cell(scene).camera.camera_from_world is not None
+
+
 def count_objects(scene: Any) -> int:
     """How many objects the scene's cell holds."""
-    collection = scene.monocell_cell.collection
-    return len(collection.objects) if has_cell(scene) and collection is not None else 0
+    from ..scene.objects import is_modelled
+
+    return sum(is_modelled(ob) for ob in scene.objects) if has_cell(scene) else 0
+
+
+def _active_picture(scene: Any) -> tuple[str, ...]:
+    """That of the active sighting: not all are looked up with every redraw."""
+    stored = scene.monocell_cell
+    rows, index = stored.sightings, stored.sighting_index
+    return (rows[index].picture,) if 0 <= index < len(rows) else ()
 
 
 def _to_calibrate(count: int, used: int) -> str:

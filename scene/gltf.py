@@ -9,13 +9,16 @@ is a node without mesh above the nodes of its parts.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
 
 from ..core.atomic import atomic_files, atomic_path
 from ..core.cell import Cell
+from ..core.document.cell_file import picture_from
 from ..core.errors import InvalidValue, RenderFailed
+from ..core.primitives import Primitive
 from .export_scene import scene_of
 from .glb_names import glb_named_by_entries, gltf_named_by_entries
 from .quiet import quiet_stdout
@@ -40,7 +43,7 @@ def export_gltf(cell: Cell, path: str | Path) -> None:
 
 
 def _export_binary(cell: Cell, path: Path) -> None:
-    with atomic_path(path) as temporary, scene_of(cell):
+    with atomic_path(path) as temporary, scene_of(_beside(cell, path.parent)):
         temporary.unlink()
         _export(temporary, export_format="GLB")
         if not temporary.is_file():
@@ -49,12 +52,24 @@ def _export_binary(cell: Cell, path: Path) -> None:
 
 
 def _export_separate(cell: Cell, path: Path) -> None:
-    with atomic_files(path) as temporary, scene_of(cell):
+    with atomic_files(path) as temporary, scene_of(_beside(cell, path.parent)):
         textures = f"{path.stem}_textures"
         _export(temporary, export_format="GLTF_SEPARATE", export_texture_dir=textures)
         if not temporary.is_file():
             raise RenderFailed(f"{path}: Blender's glTF exporter wrote nothing")
         temporary.write_text(gltf_named_by_entries(temporary.read_text("utf-8")), encoding="utf-8")
+
+
+def _beside(cell: Cell, folder: Path) -> Cell:
+    """Textures named from where the file will stand, so that whoever opens it finds them."""
+
+    def dressed(thing: Primitive) -> Primitive:
+        if thing.appearance is None:
+            return thing
+        look = thing.appearance.with_pictures(lambda name: picture_from(name, cell.folder, folder))
+        return replace(thing, appearance=look)
+
+    return replace(cell.with_objects(map(dressed, cell.objects)), folder=folder)
 
 
 def _export(path: Path, **options: str) -> None:

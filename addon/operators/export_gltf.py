@@ -5,12 +5,13 @@ from pathlib import Path
 from typing import ClassVar
 
 import bpy
-from bpy.props import EnumProperty, StringProperty
+from bpy.props import EnumProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ...core.formats.endings import FORMATS, known_ending
 from ..cell_scene import title_of
-from ..document import read_scene
+from ..document import doubts_of, read_scene
+from ..fields import endings_property
 from ..polls import NeedsCell
 from ..refusals import refuses
 
@@ -35,7 +36,7 @@ def _show_files_of(operator, context):
 
 
 class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):
-    """Export objects and camera for robot programs and 3D programs; the format is to be chosen"""
+    """Export all objects, hidden ones too, and the camera, in the format that is chosen"""
 
     bl_idname = "monocell.export_gltf"
     bl_label = "Export Cell"
@@ -51,7 +52,7 @@ class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):
         default="GLB",
         update=_show_files_of,
     )
-    filter_glob: StringProperty(default="*.glb", options={"HIDDEN"})
+    filter_glob: endings_property("*.glb")
 
     @property
     def filename_ext(self):
@@ -88,7 +89,7 @@ class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):
         path = bpy.path.abspath(self.filepath)
         self.format = format_of(known_ending(path))
         cell = read_scene(context.scene)
-        warnings = export_cell(cell, path)
+        warnings = (*export_cell(cell, path), *doubts_of(context.scene))
         for warning in warnings:
             self.report({"WARNING"}, warning)
         open_ones = [sketch.name for sketch in cell.sketches]

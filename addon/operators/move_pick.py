@@ -6,11 +6,13 @@ from typing import ClassVar
 import bpy
 from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
-from ..cell_scene import looks_through
+from ..camera_view import camera_region, view_of
+from ..fields import object_property
 from ..model_changes import active_object, change_model, name_of
-from ..on_picture import OnPicture, window_region
+from ..on_picture import OnPicture
 from ..picture_frame import picture_frame
 from ..polls import NeedsPose
+from ..preferences import settings
 from ..refusals import refuses, refuses_to_start
 
 REACH_POINTS = 14.0
@@ -25,9 +27,15 @@ class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
     bl_label = "Move Pick"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    name: StringProperty(name="Object", description="Empty: the active one", options={"SKIP_SAVE"})
-    role: StringProperty(name="Role", description="base, top, rim, ...", options={"SKIP_SAVE"})
-    index: IntProperty(name="Number", description="From 0", min=0, options={"SKIP_SAVE"})
+    name: object_property()
+    role: StringProperty(
+        name="Role",
+        description="What it was picked for, as base, top or rim",
+        options={"SKIP_SAVE"},
+    )
+    index: IntProperty(
+        name="Number", description="Which pick of that role, from 0", min=0, options={"SKIP_SAVE"}
+    )
     pixel_at: FloatVectorProperty(
         name="Pixel",
         description="Where it is now, a pixel of the picture as it came",
@@ -51,7 +59,10 @@ class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
         if pressed and not thing.picks:
             return PASSED_ON
         sigma = context.scene.monocell_inputs.pick_sigma_pixels
-        self.name, self._handles = thing.name, Handles.of(cell, thing, sigma)
+        self.name, self._handles = (
+            thing.name,
+            Handles.of(cell, thing, sigma, settings(context).unit),
+        )
         self._held = self._pressed_on(context, event) if pressed else None
         if pressed and self._held is None:
             return PASSED_ON
@@ -109,11 +120,13 @@ class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
     def _pressed_on(self, context, event):
         """The handle under a press that starts it all."""
         space = context.space_data
-        if space is None or space.type != "VIEW_3D" or not looks_through(context.scene, space):
+        if space is None or space.type != "VIEW_3D":
             return None
-        region = window_region(context.area)
+        region = camera_region(context.scene, context.area, (event.mouse_x, event.mouse_y))
+        if region is None:
+            return None
         intrinsics = self._handles.cell.camera.intrinsics
-        frame = picture_frame(context.scene, region, space, intrinsics)
+        frame = picture_frame(context.scene, region, view_of(space, region), intrinsics)
         x, y = event.mouse_x - region.x + 0.5, event.mouse_y - region.y + 0.5
         pixel = frame.picture_pixel(x, y)
         return None if pixel is None else self._handles.nearest(pixel, reach_of(context, frame))
