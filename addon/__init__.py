@@ -53,6 +53,7 @@ def _classes():
         *drops.CLASSES,
         *lists.CLASSES,
         panel_picture.PicturePanel,
+        panel_picture.LensPanel,
         panel_camera.CameraPanel,
         panel_camera.SightingsPanel,
         panel_model.ReferenceMenu,

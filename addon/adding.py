@@ -49,11 +49,14 @@ class AddsPicked(PicksOnPicture, NeedsPose):
     @refuses
     def execute(self, context):
         """Solve the picks and build the object."""
+        from ..core.length_unit import UNITS
         from ..core.picture.overlay import caption
+        from .preferences import settings
 
+        unit = UNITS[settings(context).unit]
         modelled = add_modelled(context, self.kind, self)
         self.name = modelled.object.name
-        self.report({"INFO"}, f"{self.name}: {caption(modelled.object)}")
+        self.report({"INFO"}, f"{self.name}: {caption(modelled.object, unit)}")
         for warning in modelled.warnings:
             self.report({"WARNING"}, warning)
         return {"FINISHED"}

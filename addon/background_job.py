@@ -93,6 +93,10 @@ class WorksInBackground:
 
     def invoke(self, context, event):
         """Start it and come back."""
+        return self.start(context)
+
+    def start(self, context):
+        """Begin the work, and look after it from then on."""
         state = context.window_manager.monocell_work
         if state.title:
             self.report({"ERROR"}, f"{state.title} is still running: wait, or cancel it")
@@ -125,14 +129,18 @@ class WorksInBackground:
         if self._job.running or event.type != "TIMER":
             return {"RUNNING_MODAL"} if event.type == "ESC" else {"PASS_THROUGH"}
         self._end(context)
-        return self._ended(context)
+        return self._ended(context, event)
 
     def cancel(self, context):
         """Blender's own way out, when a file is loaded or the window closes."""
         self._job.watch.stop()
         self._end(context)
 
-    def _ended(self, context):
+    def arrived(self, context, event, result):
+        """What follows when the work is done in a window."""
+        return self.finish(context, result)
+
+    def _ended(self, context, event):
         try:
             result = self._job.result()
             if context.window_manager.monocell_work.cancel:
@@ -148,7 +156,7 @@ class WorksInBackground:
         if scene.session_uid != self._scene or scene.monocell_cell.text != self._text:
             self.report({"ERROR"}, "The cell was changed meanwhile: start again for it as it is")
             return {"CANCELLED"}
-        return self.finish(context, result)
+        return self.arrived(context, event, result)
 
     def _end(self, context):
         context.window_manager.event_timer_remove(self._timer)

@@ -29,7 +29,7 @@ def calibrated(cell: Cell, watch: Watch | None = None) -> tuple[Cell, Report]:
     """
     solved, calibration = calibrate_cell(cell, watch=watch)
     failed = calibration.verdict == "failed"
-    warnings, surface, advice = calibration.warnings, "", ()
+    warnings, surface, advice = calibration.warnings, ("", None), ()
     if not failed:
         more, surface, advice = _accuracy(solved, calibration)
         warnings = (*warnings, *more)
@@ -39,8 +39,9 @@ def calibrated(cell: Cell, watch: Watch | None = None) -> tuple[Cell, Report]:
         float(calibration.rms_pixels),
         float(calibration.edge_bias_pixels),
         _every(cell, [seen_of(one) for one in calibration.sightings]),
-        surface,
+        surface[0],
         advice,
+        surface_millimetres=surface[1],
     )
     # a pose that can't be trusted is reported, with every outline, but nothing is built on it
     return (cell if failed else solved), report
@@ -71,7 +72,7 @@ def _every(cell: Cell, rows: list[SeenSighting]) -> tuple[SeenSighting, ...]:
 
 def _accuracy(
     cell: Cell, calibration: Calibration
-) -> tuple[tuple[str, ...], str, tuple[AdvisedPlace, ...]]:
+) -> tuple[tuple[str, ...], tuple[str, float | None], tuple[AdvisedPlace, ...]]:
     """Further warnings, how well a point worked at is known, and where to hold the ball next."""
     from ..core.calibration.accuracy import accuracy_of, advised
     from ..core.calibration.advise import positions_in_box, reachable_box
@@ -80,8 +81,8 @@ def _accuracy(
     accuracy = accuracy_of(cell, calibration, surface_of(cell))
     surface = accuracy.surface
     if surface is None:
-        return accuracy.warnings, "", ()
-    said = f"{1e3 * surface.at_work:.2f} mm on {surface.plane.name}"
+        return accuracy.warnings, ("", None), ()
+    said = (surface.plane.name, 1e3 * surface.at_work)
     try:
         box = positions_in_box(reachable_box(calibration.fit.places_base))
         steps = advised(calibration, surface.area, box).steps

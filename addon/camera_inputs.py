@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import radians, tan
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,14 @@ def stated_camera(inputs: Any, picture: Path) -> Camera:
     Raises DocumentError and InvalidValue for a file or numbers that are no camera, PictureError for
     a picture that can't be read.
     """
+    return camera_for(inputs, lambda: _size(picture))
+
+
+def camera_for(inputs: Any, size: Callable[[], tuple[int, int]]) -> Camera:
+    """The camera of the scene's inputs; typed numbers are for pictures of that size in pixels.
+
+    Raises DocumentError and InvalidValue for a file or numbers that are no camera.
+    """
     import bpy
 
     if inputs.camera_source == "FILE":
@@ -30,7 +39,11 @@ def stated_camera(inputs: Any, picture: Path) -> Camera:
         from ..core.document.camera_file import read_camera
 
         return read_camera(bpy.path.abspath(inputs.camera))
-    width, height = _size(picture)
+    if inputs.camera_source == "BOARD":
+        from .lens_estimate import estimated_camera
+
+        return estimated_camera(inputs.id_data.monocell_lens.estimate)
+    width, height = size()
     cx, cy = inputs.centre_x, inputs.centre_y
     if inputs.centred:
         cx, cy = (width - 1) / 2, (height - 1) / 2

@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from ..core.cell import Cell, feature_owner
 from ..core.errors import InvalidValue
 from ..core.modelling.solve import model
@@ -16,6 +18,9 @@ from ..core.reference import PendingReference, Reference, ReferencePlane
 from ..core.references.resolve import resolve_references
 from ..core.relation import Relation
 from ..core.sketch import Sketch
+
+# an object without picks that goes farther, in metres, is told of
+TOLD_MOVE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,17 +53,19 @@ def with_size(cell: Cell, name: str, size: str, metres: float | None, sigma: flo
         # refuses what can't be before anything is solved
         sized = _resized(cell, thing, size, metres)
         if not thing.picks:
-            edited = solved(_with(cell, replace(sized, known=known)), [name], sigma)
-            return replace(edited, warnings=edited.warnings[1:])
+            return solved(_with(cell, replace(sized, known=known)), [name], sigma)
     return solved(_with(cell, replace(thing, known=known)), [name], sigma)
 
 
 def with_relations(
     cell: Cell, name: str, relations: Iterable[Relation], sigma: float, *, on: str | None = None
 ) -> Edited:
-    """With an object held by other relations, and standing `on` a reference or on none."""
+    """With an object held by other relations, and standing `on` a reference or on none.
+
+    One without picks moves as little as lets them hold.
+    """
     thing = replace(object_called(cell, name), relations=tuple(relations), on=on)
-    return solved(_with(cell, thing), [name], sigma)
+    return solved(_with(cell, thing), [name], sigma, held=[name])
 
 
 def with_motion(cell: Cell, name: str, motion: Motion) -> Edited:
@@ -104,25 +111,30 @@ def without_reference(cell: Cell, name: str) -> Edited:
     return Edited(replace(cell, references=kept), ())
 
 
-def solved(cell: Cell, names: Collection[str], sigma: float) -> Edited:
+def solved(cell: Cell, names: Collection[str], sigma: float, held: Collection[str] = ()) -> Edited:
     """Objects solved again from their picks, with all that they hold; the others stand still.
 
-    Raises what `model` raises.
+    Of those named, one without picks stays where it is unless it is one of `held` or hangs on
+    another object. Raises what `model` raises.
     """
     moving = depending(cell, names)
+    following = (moving - set(names)) | set(held)
     still = {thing.name: thing for thing in cell.objects if thing.name not in moving}
-    # an object without picks is one that `model` leaves alone
-    quiet = tuple(replace(t, picks={}) if t.name in still else t for t in cell.objects)
-    modelling = model(_without_idle_sketches(replace(cell, objects=quiet)), sigma)
+    # an object without picks that nothing holds is one that `model` leaves alone
+    quiet = tuple(
+        replace(t, picks={}, on=None, relations=()) if t.name in still else t for t in cell.objects
+    )
+    bare = _without_idle_sketches(replace(cell, objects=quiet))
+    modelling = model(bare, sigma, held=following)
     after = {thing.name: thing for thing in modelling.cell.objects}
     objects = tuple(still.get(thing.name, after[thing.name]) for thing in cell.objects)
     references = modelling.cell.references
     done = replace(cell, references=references, objects=objects)
     warnings = [word for result in modelling.results for word in result.warnings]
     warnings += [
-        f"{thing.name}: has no picks, so it stays where it is"
+        f"{thing.name}: has no picks; what holds it moved it by {1e3 * far:.1f} mm"
         for thing in cell.objects
-        if thing.name in moving and not thing.picks and paths_of(thing)
+        if not thing.picks and (far := _apart(thing, after[thing.name])) > TOLD_MOVE
     ]
     return Edited(done, tuple(sorted(moving)), (*modelling.warnings, *warnings))
 
@@ -162,6 +174,12 @@ def object_called(cell: Cell, name: str) -> Primitive:
             return thing
     listed = ", ".join(thing.name for thing in cell.objects) or "none at all"
     raise InvalidValue(f"no solved object is called {name!r}; there is {listed}")
+
+
+def _apart(one: Primitive, other: Primitive) -> float:
+    """How far an object's centre went, metres."""
+    place, now = one.world_from_object.translation, other.world_from_object.translation
+    return float(np.linalg.norm(now - place))
 
 
 def _with(cell: Cell, thing: Primitive) -> Cell:

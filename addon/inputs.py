@@ -10,6 +10,8 @@ from bpy.props import (
     StringProperty,
 )
 
+from ..core.sighting import LEAST_RADIUS, MOST_RADIUS
+
 
 class SceneInputs(bpy.types.PropertyGroup):
     """What the user fills in before there is a cell, and how sure the picks are."""
@@ -31,6 +33,7 @@ class SceneInputs(bpy.types.PropertyGroup):
             ),
             ("PIXELS", "Pixels", "Focal lengths and principal point in pixels, typed"),
             ("ANGLE", "Angle", "The horizontal field of view in degrees, as data sheets give it"),
+            ("BOARD", "Board", "Estimated from pictures of a chessboard or ChArUco board"),
         ),
     )
     camera: StringProperty(
@@ -109,7 +112,8 @@ class SceneInputs(bpy.types.PropertyGroup):
         name="Ball radius",
         description="Radius of the ball of new sightings, metres",
         default=0.04,
-        min=1e-5,
+        min=LEAST_RADIUS,
+        max=MOST_RADIUS,
         soft_max=0.5,
         precision=4,
         unit="LENGTH",

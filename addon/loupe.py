@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 
 from ..core.arrays import Array
+from .beside_cursor import Box, loupe_box
 from .drawing import HALO, WHITE, LineBatch, draw_lines
 
 # how many pixels of the picture it shows across
 ACROSS = 23
-# how far from the cursor it keeps, screen pixels at an interface scale of 1
-AWAY = 34.0
 
 
 def shown_pixels(scene: Any) -> Array | None:
@@ -32,16 +31,11 @@ def shown_pixels(scene: Any) -> Array | None:
 class Loupe:
     """Where the loupe stands in the region, and what it maps to it."""
 
-    def __init__(
-        self, cursor: tuple[float, float], size: tuple[float, float], zoom: int, scale: float
-    ) -> None:
+    def __init__(self, cursor: tuple[float, float], free: Box, zoom: int, scale: float) -> None:
         self.zoom = zoom * scale
-        side, away = ACROSS * self.zoom, AWAY * scale
-        x, y = cursor
-        # above to the left of the cursor, where the words are not; on the other side at the rim
-        self.left = x - away - side if x - away - side > 0 else x + away
-        self.bottom = y + away if y + away + side < size[1] else y - away - side
-        self.side = side
+        self.side = ACROSS * self.zoom
+        self.box = loupe_box(self.side, cursor, free, scale)
+        self.left, self.bottom = self.box[:2]
 
     @property
     def middle(self) -> Array:

@@ -5,7 +5,7 @@ import bpy
 
 from .camera_view import camera_region, picking_region, region_under, view_of
 from .document import bare_cell
-from .picture_frame import free_part, free_size, picture_frame
+from .picture_frame import free_part, picture_frame
 from .preferences import settings
 
 # what moves the view goes to Blender, so that zoom and pan work as ever
@@ -41,27 +41,34 @@ class OnPicture:
     `keys()`, the icons and words of the status bar. Cancelling leaves nothing behind.
     """
 
+    # whether a click means the corner or edge near it
+    snaps = True
+
     def begin(self, context, event):
         """Become modal where a viewport looks through the cell's camera. Raises InvalidValue."""
-        scene, self._mouse = context.scene, (event.mouse_x, event.mouse_y)
-        picking_region(context, self._mouse)
+        picking_region(context, (event.mouse_x, event.mouse_y))
+        self.enter(context, event)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def enter(self, context, event):
+        """Begin to draw and to follow the mouse; for an operator that is modal already."""
         from .aiming import Aiming
         from .loupe import shown_pixels
 
+        scene, self._mouse = context.scene, (event.mouse_x, event.mouse_y)
         self.settings = settings(context)
         self._area, self._scene = context.area.as_pointer(), scene.session_uid
         self._intrinsics = bare_cell(scene).camera.intrinsics
         self._aiming, self._aimed = Aiming.of(scene, context.space_data), None
         self._shown_pixels = shown_pixels(scene) if self.settings.loupe else None
-        self.cursor, self._turned = None, False
+        self.cursor, self._turned, self._loupe = None, False, None
         self._follow(context, context.area, event)
         self._handle = bpy.types.SpaceView3D.draw_handler_add(
             self._draw, (context,), "WINDOW", "POST_PIXEL"
         )
-        context.window_manager.modal_handler_add(self)
         self.tell(context)
         context.area.tag_redraw()
-        return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
         """One event: the operator's own, or something for Blender."""
@@ -145,7 +152,7 @@ class OnPicture:
         from .drawing import WHITE, draw_crosses, draw_ring
 
         scale = context.preferences.system.ui_scale
-        aim = self.aim(context, context.area)
+        aim, self._loupe = self.aim(context, context.area), None
         if aim is None:
             draw_crosses([self.cursor], WHITE, scale)
             return ""
@@ -154,18 +161,32 @@ class OnPicture:
         draw_crosses(at, WHITE, scale)
         if aim.told:
             draw_ring(at[0], self.settings.active_color, scale)
-        if self._shown_pixels is not None:
-            from .loupe import Loupe
-
-            size = free_size(context)
-            loupe = Loupe(self.cursor, size, self.settings.loupe_zoom, scale)
-            loupe.draw(self._shown_pixels, centre[0], lines, scale)
+        self.paint_loupe(context, centre[0], lines)
         return f"snapped to {aim.told}" if aim.told else ""
+
+    def paint_loupe(self, context, centre, lines):
+        """The picture's pixels round `centre` (2,) of the view, enlarged, with lines over them."""
+        if self._shown_pixels is None:
+            return
+        from .loupe import Loupe
+
+        scale, free = context.preferences.system.ui_scale, free_part(context.area, context.region)
+        loupe = Loupe(self.cursor, free, self.settings.loupe_zoom, scale)
+        self._loupe = loupe.box
+        loupe.draw(self._shown_pixels, centre, lines, scale)
+
+    def paint_words(self, context, rows):
+        """Words and their colours beside the cursor, where no sidebar and no loupe is."""
+        from .drawing import draw_words
+
+        scale, free = context.preferences.system.ui_scale, free_part(context.area, context.region)
+        draw_words(rows, self.cursor, free, scale, self._loupe)
 
     def tell(self, context):
         """Name the keys in the status bar."""
         snapping = "Do not snap" if self.settings.snap else "Snap"
-        keys = (*self.keys(), ("EVENT_CTRL", f"   {snapping}"), *PAN_KEYS)
+        turns = (("EVENT_CTRL", f"   {snapping}"),) if self.snaps else ()
+        keys = (*self.keys(), *turns, *PAN_KEYS)
 
         def draw(header, context):
             row = header.layout.row(align=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from .cell_scene import camera_stands
 from .document import bare_cell, has_cell, stored_report
-from .lengths import lengths
+from .lengths import length, lengths, place_unit
 from .lists import SightingList
 from .operators.add_pictures import AddPictures
 from .operators.add_point import AddPoint
@@ -23,11 +23,9 @@ from .operators.paste_sightings import PasteSightings
 from .operators.read_sightings import ReadSightings
 from .operators.remove_sighting import RemoveSighting
 from .operators.show_picture import ShowPicture
-from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
+from .panel_parts import VERDICT_ICONS, CellPanel, next_thing, numbers, paragraph, standing
 from .preferences import settings
 from .steps import FEWEST_SIGHTINGS, camera_step
-
-VERDICT_ICONS = {"good": "CHECKMARK", "weak": "ERROR", "failed": "CANCEL"}
 
 
 class CameraPanel(CellPanel, bpy.types.Panel):
@@ -176,24 +174,24 @@ def _draw_pose(layout, context, cell):
         paragraph(layout, context, warning, "DOT")
     if report.advice:
         layout.label(text="Hold the ball here next", icon="OUTLINER_OB_LIGHTPROBE")
-        numbers(layout, _advice_rows(report))
+        numbers(layout, _advice_rows(report, settings(context).unit))
 
 
 def _pose_rows(camera, report, unit):
-    x, y, z = camera.centre_world
-    yield "Position", f"{x:.4f}  {y:.4f}  {z:.4f} m"
+    yield "Position", lengths(camera.centre_world, place_unit(unit))
     if camera.covariance is not None:
         yield "± 1 sigma", lengths(camera.centre_sigma(), unit, finer=1)
         x, y, z = np.degrees(camera.rotation_sigma())
         yield "Turned ±", f"{x:.3f}  {y:.3f}  {z:.3f}°"
     if report is not None and report.verdict:
-        if report.surface:
-            yield "A point ±", report.surface
+        if report.surface_millimetres is not None:
+            told = length(1e-3 * report.surface_millimetres, unit, finer=1)
+            yield "A point ±", f"{told} on {report.surface}"
         yield "Outlines", f"{report.rms_pixels:.2f} px rms"
         yield "Edge bias", f"{report.edge_bias_pixels:+.2f} px"
 
 
-def _advice_rows(report):
+def _advice_rows(report, unit):
     for k, one in enumerate(report.advice):
-        x, y, z = one.place
-        yield f"{k + 1}", f"{x:.2f}  {y:.2f}  {z:.2f} m: ± {one.sigma_millimetres:.2f} mm"
+        then = length(1e-3 * one.sigma_millimetres, unit, finer=1)
+        yield f"{k + 1}", f"{lengths(one.place, place_unit(unit), finer=-2)}: ± {then}"

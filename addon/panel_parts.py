@@ -50,25 +50,5 @@ def next_thing(layout, context, step):
         paragraph(layout, context, step.said, "ERROR" if step.mark == "doubt" else "NONE")
 
 
-def camera_inputs(layout, inputs):
-    """The fields that state a camera which is not known from a document."""
-    layout.row().prop(inputs, "camera_source", expand=True)
-    column = layout.column(align=True)
-    if inputs.camera_source == "FILE":
-        column.prop(inputs, "camera", text="", placeholder="Camera file (YAML, XML, JSON, TXT)")
-        return
-    if inputs.camera_source == "PIXELS":
-        column.prop(inputs, "focal_x")
-        column.prop(inputs, "focal_y")
-    else:
-        column.prop(inputs, "field_degrees")
-    column.prop(inputs, "centred", text="Principal point in the middle")
-    if not inputs.centred:
-        column.prop(inputs, "centre_x")
-        column.prop(inputs, "centre_y")
-    column.prop(inputs, "lens_model", text="")
-    if inputs.lens_model != "none":
-        column.prop(inputs, "coefficients", text="", placeholder="k1 k2 p1 p2 ...")
-
-
 MARKS = {"done": "CHECKMARK", "next": "RIGHTARROW_THIN", "waiting": "BLANK1", "doubt": "ERROR"}
+VERDICT_ICONS = {"good": "CHECKMARK", "weak": "ERROR", "failed": "CANCEL"}

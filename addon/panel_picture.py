@@ -1,16 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar's first step: which picture, taken by which camera."""
 
+from typing import ClassVar
+
 import bpy
 
 from .document import bare_cell, has_cell
+from .operators.change_camera import ChangeCamera
 from .operators.find_pictures import FindPictures
 from .operators.look_through import LookThrough
 from .operators.open_cell import OpenCell
 from .operators.open_picture import OpenPicture
-from .operators.open_sample import OpenSample
-from .panel_parts import CellPanel, camera_inputs, next_thing, numbers, paragraph, standing
+from .operators.open_sample import SAMPLES, OpenSample
+from .panel_lens import camera_inputs
+from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
 from .steps import picture_step
+
+SAMPLE_ICONS = {"STACK": "OUTLINER_OB_CAMERA", "TABLE": "FILE_3D"}
 
 
 class PicturePanel(CellPanel, bpy.types.Panel):
@@ -32,24 +38,27 @@ class PicturePanel(CellPanel, bpy.types.Panel):
                 paragraph(layout, context, scene.monocell_cell.shown_told, "INFO")
             _draw_opened(layout, scene)
         else:
-            _draw_start(layout, scene.monocell_inputs)
+            _draw_start(layout, context)
 
 
-def _draw_start(layout, inputs):
+def _draw_start(layout, context):
+    inputs = context.scene.monocell_inputs
     column = layout.column(align=True)
-    column.operator(OpenSample.bl_idname, icon="OUTLINER_OB_CAMERA")
+    for name, label, _ in SAMPLES:
+        column.operator(OpenSample.bl_idname, text=label, icon=SAMPLE_ICONS[name]).sample = name
     column.operator(OpenCell.bl_idname, icon="FILE_FOLDER")
     layout.separator(type="LINE")
     layout.prop(inputs, "picture", text="", placeholder="Picture")
-    camera_inputs(layout, inputs)
+    camera_inputs(layout, context)
+    stated = {"FILE": inputs.camera, "BOARD": context.scene.monocell_lens.estimate}
     ready = layout.row()
-    ready.enabled = bool(inputs.picture and (inputs.camera or inputs.camera_source != "FILE"))
+    ready.enabled = bool(inputs.picture and stated.get(inputs.camera_source, True))
     opened = ready.operator(OpenPicture.bl_idname, icon="IMAGE_DATA")
     opened.picture = inputs.picture
 
 
 def _draw_opened(layout, scene):
-    stored, camera = scene.monocell_cell, bare_cell(scene).camera.intrinsics
+    stored = scene.monocell_cell
     if stored.camera is not None and len(stored.camera.data.background_images):
         plate = stored.camera.data.background_images[0]
         row = layout.row(align=True)
@@ -58,16 +67,37 @@ def _draw_opened(layout, scene):
         row.prop(plate, "alpha", text="Opacity", slider=True)
     if picture_step(scene).mark == "doubt" and stored.shown_picture:
         layout.operator(FindPictures.bl_idname, icon="VIEWZOOM")
-    numbers(
-        layout,
-        (
-            ("Shown", stored.shown_picture or "no picture"),
-            ("Size", f"{camera.width} × {camera.height} px"),
-            ("Focal", f"{camera.fx:.1f}, {camera.fy:.1f} px"),
-            ("Centre", f"{camera.cx:.1f}, {camera.cy:.1f} px"),
-            ("Lens", camera.distortion.model.replace("_", " ")),
-        ),
-    )
     row = layout.row(align=True)
     row.operator(LookThrough.bl_idname, text="Look Through", icon="VIEW_CAMERA")
     row.operator(OpenCell.bl_idname, text="Open Another", icon="FILE_FOLDER")
+
+
+class LensPanel(CellPanel, bpy.types.Panel):
+    """The camera's numbers, and how to change them."""
+
+    bl_idname = "MONOCELL_PT_lens"
+    bl_parent_id = PicturePanel.bl_idname
+    bl_label = "Lens"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Blender's question whether it is shown."""
+        return has_cell(context.scene)
+
+    def draw(self, context):
+        """Blender's call."""
+        layout, camera = self.layout, bare_cell(context.scene).camera.intrinsics
+        numbers(
+            layout,
+            (
+                ("Size", f"{camera.width} × {camera.height} px"),
+                ("Focal", f"{camera.fx:.1f}, {camera.fy:.1f} px"),
+                ("Centre", f"{camera.cx:.1f}, {camera.cy:.1f} px"),
+                ("Lens", camera.distortion.model.replace("_", " ")),
+            ),
+        )
+        layout.separator(type="LINE")
+        layout.label(text="Another camera")
+        camera_inputs(layout, context)
+        layout.operator(ChangeCamera.bl_idname, icon="CAMERA_DATA")

@@ -14,10 +14,9 @@ from .drawing import (
     draw_crosses,
     draw_lines,
     draw_ring,
-    draw_words,
 )
 from .pick_session import PickSession, Preview
-from .picture_frame import PictureFrame, free_size
+from .picture_frame import PictureFrame
 from .preferences import Settings
 
 HIDDEN_SHARE = 0.45
@@ -37,11 +36,7 @@ def draw_preview(
 
 
 def draw_prompt(
-    context: Any,
-    session: PickSession,
-    preview: Preview,
-    snapped: str,
-    cursor: tuple[float, float],
+    context: Any, operator: Any, session: PickSession, preview: Preview, snapped: str
 ) -> None:
     """Words beside the cursor: what the click is for, where it is, what is wrong."""
     rows = [
@@ -51,8 +46,7 @@ def draw_prompt(
         (snapped, WHITE),
         (preview.complaint, ORANGE),
     ]
-    size = free_size(context)
-    draw_words(rows, *cursor, size, context.preferences.system.ui_scale)
+    operator.paint_words(context, rows)
 
 
 def draw_handles(
@@ -68,8 +62,7 @@ def draw_handles(
         if handle != held:
             draw_ring(at, look.active_color, scale)
     if held is None or aim is None:
-        rows = [("drag a pick", WHITE)]
-        draw_words(rows, *operator.cursor, free_size(context), scale)
+        operator.paint_words(context, [("drag a pick", WHITE)])
         return
     preview = handles.moved(held, aim.pixel)
     lines = [frame.region_points(line.pixels) for line in preview.lines if line.visible]
@@ -84,4 +77,4 @@ def draw_handles(
         (snapped, WHITE),
         (preview.complaint, ORANGE),
     ]
-    draw_words(rows, *operator.cursor, free_size(context), scale)
+    operator.paint_words(context, rows)

@@ -11,6 +11,7 @@ from ..core.arrays import Array
 from ..core.camera import Camera
 from ..core.cell import Cell
 from ..core.errors import InvalidValue, MonocellError
+from ..core.length_unit import UNITS
 from ..core.modelling.solve import solve_sketch
 from ..core.picture.wireframe import wireframe
 from ..core.primitives import Primitive
@@ -23,16 +24,18 @@ Handle = tuple[str, int]
 
 @dataclass(frozen=True, eq=False)
 class Handles:
-    """An object of a cell with its picks; `sigma` is how far off clicks are, in pixels."""
+    """An object of a cell with its picks; `sigma` is how far off clicks are, in pixels, `unit`
+    what sizes are told in."""
 
     cell: Cell
     thing: Primitive
     sigma: float
+    unit: str = "mm"
 
     @staticmethod
-    def of(cell: Cell, thing: Primitive, sigma: float) -> Handles:
+    def of(cell: Cell, thing: Primitive, sigma: float, unit: str = "mm") -> Handles:
         """Raises InvalidValue for an object without picks."""
-        handles = Handles(cell, thing, sigma)
+        handles = Handles(cell, thing, sigma, unit)
         if not handles.places:
             raise InvalidValue(f"{thing.name}: has no picks that could be moved")
         return handles
@@ -61,7 +64,7 @@ class Handles:
             thing = solve_sketch(camera, sketch, references, others, self.sigma).object
         except MonocellError as error:
             return Preview((), "", str(error).split(";")[0])
-        return Preview(wireframe(thing, _pinhole(camera)), caption(thing), "")
+        return Preview(wireframe(thing, _pinhole(camera)), caption(thing, UNITS[self.unit]), "")
 
 
 def picks_by_place(thing: Primitive) -> dict[Handle, Array]:

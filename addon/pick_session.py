@@ -11,6 +11,7 @@ import numpy as np
 from ..core.arrays import Array
 from ..core.camera import Camera
 from ..core.errors import MonocellError
+from ..core.length_unit import UNITS
 from ..core.modelling.mapped_covariance import point_covariance_on_plane
 from ..core.modelling.reverse_mapping import points_on_plane
 from ..core.modelling.solve import solve_sketch
@@ -18,10 +19,13 @@ from ..core.picture.wireframe import Polyline, wireframe
 from ..core.primitives import KINDS, Primitive
 from ..core.reference import Reference, ReferencePlane
 from ..core.sketch import Sketch
+from .lengths import length, place_unit
 from .pick_plan import PickPlan, Stage, picks_of
 from .typed_size import metres_of, with_sign
 
 PREVIEW = "preview"
+# an error from here on, in metres, has no digits to spare
+FAR_SIGMA = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,7 +217,7 @@ class PickSession:
             return after._flat(place, "")
         try:
             thing = after.solved()
-            return Preview(after._lines(thing), place or caption(thing), "")
+            return Preview(after._lines(thing), place or caption(thing, UNITS[self.unit]), "")
         except MonocellError as error:
             # while picks are still missing, what they can't tell yet is no complaint
             return after._flat(place, _plain(error) if after.complete else "")
@@ -256,16 +260,18 @@ class PickSession:
         return self.place(pixel) if on_it else ""
 
     def place(self, pixel: Array) -> str:
-        """Where a pixel (2,) hits the reference, in metres, and how surely."""
+        """Where a pixel (2,) hits the reference, in the user's unit, and how surely."""
         if not isinstance(self.reference, ReferencePlane):
             return ""
-        # adding nought turns -0.000 into 0.000
-        x, y, z = np.round(points_on_plane(self.camera, self.reference, pixel[None])[0], 3) + 0.0
+        point = points_on_plane(self.camera, self.reference, pixel[None])[0]
         covariance = point_covariance_on_plane(
             self.camera, self.reference, pixel[None], self.sigma
         )[0]
-        worst = 1e3 * float(np.sqrt(max(np.linalg.eigvalsh(covariance)[-1], 0.0)))
-        return f"x {x:.3f}   y {y:.3f}   z {z:.3f} m   ± {worst:.{1 if worst < 100 else 0}f} mm"
+        worst = float(np.sqrt(max(np.linalg.eigvalsh(covariance)[-1], 0.0)))
+        world = place_unit(self.unit)
+        x, y, z = (UNITS[world].number(value, finer=-1) for value in point)
+        told = length(worst, self.unit, finer=0 if worst < FAR_SIGMA else -1)
+        return f"x {x}   y {y}   z {z} {world}   ± {told}"
 
     def _lines(self, thing: Primitive) -> tuple[Polyline, ...]:
         return wireframe(thing, self._pinhole_camera())

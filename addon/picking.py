@@ -86,7 +86,7 @@ class PicksOnPicture(OnPicture):
         draw_preview(frame, self._session, preview, self.settings, scale)
         lines = [(line.pixels, self.settings.object_color) for line in preview.lines]
         snapped = self.paint_aim(context, frame, lines)
-        draw_prompt(context, self._session, preview, snapped, self.cursor)
+        draw_prompt(context, self, self._session, preview, snapped)
 
     def keys(self):
         """What the status bar tells."""

@@ -136,12 +136,6 @@ def free_part(area: Any, region: Any) -> tuple[float, float, float, float]:
     return left, bottom, right, top
 
 
-def free_size(context: Any) -> tuple[float, float]:
-    """How far words may reach to the right and up in the region that is drawn."""
-    _, _, right, top = free_part(context.area, context.region)
-    return right, top
-
-
 def _zoom_factor(view_camera_zoom: float) -> float:
     return float((math.sqrt(2.0) + view_camera_zoom / 50.0) ** 2 / 4.0)
 

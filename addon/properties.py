@@ -13,8 +13,10 @@ from bpy.props import (
     StringProperty,
 )
 
+from ..core.sighting import LEAST_RADIUS, MOST_RADIUS
 from .document import bare_cell
 from .inputs import SceneInputs
+from .lens_inputs import LensInputs
 from .object_fields import ObjectFields
 from .place_inputs import decimals
 from .sightings import edit_sighting
@@ -49,7 +51,10 @@ def _radius(row):
 
 
 def _set_radius(row, value):
-    edit_sighting(row.id_data, row.index, radius=float(decimals([value])[0]))
+    # a point has none; the field is not shown for it
+    if row.kind == "ball":
+        radius = min(max(float(decimals([value])[0]), LEAST_RADIUS), MOST_RADIUS)
+        edit_sighting(row.id_data, row.index, radius=radius)
 
 
 class SightingRow(bpy.types.PropertyGroup):
@@ -76,7 +81,8 @@ class SightingRow(bpy.types.PropertyGroup):
     radius: FloatProperty(
         name="Radius",
         description="Radius of the ball, metres",
-        min=1e-5,
+        min=LEAST_RADIUS,
+        max=MOST_RADIUS,
         precision=4,
         unit="LENGTH",
         get=_radius,
@@ -122,6 +128,7 @@ class SceneCell(bpy.types.PropertyGroup):
     folder: StringProperty(name="Folder that picture names start from")
     folder_beside: StringProperty(name="The same as seen from the .blend file when it was saved")
     path: StringProperty(name="Document this was read from or last written to")
+    outdated: StringProperty(name="Why objects have to be solved again; empty where they need not")
     shown_picture: StringProperty(name="Picture behind the camera view")
     shown_told: StringProperty(name="What is to say of that picture")
     camera: PointerProperty(type=bpy.types.Object, name="The cell's camera")
@@ -145,10 +152,11 @@ class Work(bpy.types.PropertyGroup):
     name: StringProperty(name="What it has come to")
     share: FloatProperty(name="How much is done", min=0.0, max=1.0)
     cancel: BoolProperty(name="Whether it was told to end")
+    reviewing: BoolProperty(name="Whether what would change is shown, and the model is not")
     picking: BoolProperty(name="Whether an object is being picked, and sightings are hidden")
 
 
-CLASSES = (SightingRow, ReferenceRow, SceneCell, SceneInputs, ObjectFields, Work)
+CLASSES = (SightingRow, ReferenceRow, SceneCell, SceneInputs, LensInputs, ObjectFields, Work)
 
 
 def register():
@@ -157,6 +165,7 @@ def register():
         bpy.utils.register_class(cls)
     bpy.types.Scene.monocell_cell = PointerProperty(type=SceneCell)
     bpy.types.Scene.monocell_inputs = PointerProperty(type=SceneInputs)
+    bpy.types.Scene.monocell_lens = PointerProperty(type=LensInputs)
     bpy.types.Scene.monocell_object = PointerProperty(type=ObjectFields)
     bpy.types.WindowManager.monocell_work = PointerProperty(type=Work)
 
@@ -165,6 +174,7 @@ def unregister():
     """Take them off again; what they hold stays in the file."""
     del bpy.types.WindowManager.monocell_work
     del bpy.types.Scene.monocell_object
+    del bpy.types.Scene.monocell_lens
     del bpy.types.Scene.monocell_inputs
     del bpy.types.Scene.monocell_cell
     for cls in reversed(CLASSES):

@@ -12,21 +12,22 @@ import numpy as np
 from ..core.arrays import Array
 from ..core.camera import Camera
 from ..core.picture.wireframe import finite_parts
-from .drawing import ORANGE, WHITE, YELLOW, draw_crosses, draw_lines, draw_words
-from .picture_frame import PictureFrame, free_size
+from .drawing import ORANGE, WHITE, YELLOW, draw_crosses, draw_lines
+from .picture_frame import PictureFrame
 
 LINE_SAMPLES = 24
 
 
-def draw_shown(context: Any, frame: PictureFrame, camera: Camera, shown: Any, cursor: Any) -> None:
+def draw_shown(
+    context: Any, frame: PictureFrame, camera: Camera, shown: Any, operator: Any
+) -> None:
     """The face, edge or axis under the cursor, and its name."""
     scale = context.preferences.system.ui_scale
     words = "nothing to stand on here"
     if shown is not None:
         words = shown.path
         draw_lines(_in_region(frame, camera, shown.line), ORANGE, 3.5, scale)
-    size = free_size(context)
-    draw_words([(words, ORANGE if shown is not None else WHITE)], *cursor, size, scale)
+    operator.paint_words(context, [(words, ORANGE if shown is not None else WHITE)])
 
 
 def draw_upright(context: Any, frame: PictureFrame, operator: Any) -> None:
@@ -41,8 +42,7 @@ def draw_upright(context: Any, frame: PictureFrame, operator: Any) -> None:
         draw_lines([np.vstack([points[-1:], end])], YELLOW, 2.0, scale)
     draw_crosses(points, YELLOW, scale)
     snapped = operator.paint_aim(context, frame)
-    rows = [(operator.keys()[0][1], WHITE), (snapped, WHITE)]
-    draw_words(rows, *operator.cursor, free_size(context), scale)
+    operator.paint_words(context, [(operator.keys()[0][1], WHITE), (snapped, WHITE)])
 
 
 def _in_region(frame: PictureFrame, camera: Camera, line: Array) -> list[Array]:

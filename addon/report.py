@@ -44,7 +44,8 @@ class Report:
     """The last search or calibration of a scene, sightings in the document's order.
 
     `verdict` is empty, and the numbers are None, after a search alone. `changed` tells that
-    sightings were edited since. `surface` says in words how well a point worked at is known.
+    sightings were edited since, `searched` that balls were found anew and the sightings show that.
+    `surface_millimetres` is how well a point worked at is known on the plane called `surface`.
     """
 
     verdict: str
@@ -55,6 +56,8 @@ class Report:
     surface: str = ""
     advice: tuple[AdvisedPlace, ...] = ()
     changed: bool = False
+    searched: bool = False
+    surface_millimetres: float | None = None
 
     def arranged(self, kept: Sequence[int | None]) -> Report:
         """The report after sightings were edited: `kept` has the old index of each, None of a new.
@@ -63,6 +66,10 @@ class Report:
         """
         rows = tuple(SeenSighting(*NOT_LOOKED) if i is None else self.sightings[i] for i in kept)
         return replace(self, sightings=rows, advice=(), changed=True)
+
+    def with_search(self, found: Report) -> Report:
+        """The calibration with its numbers, and the balls as a later search has found them."""
+        return replace(self, sightings=found.sightings, searched=True)
 
 
 def seen_of(sighting: Any) -> SeenSighting:

@@ -46,9 +46,14 @@ def remove_sighting(scene: Any, index: int) -> Sighting:
 def edit_sighting(scene: Any, index: int, **changes: Any) -> None:
     """Change fields of one sighting; what is known of the others stays, and of it what still holds.
 
-    Raises InvalidValue.
+    Raises InvalidValue, also for a field that only balls have.
     """
     sightings = list(bare_cell(scene).sightings)
+    for name in changes:
+        if not hasattr(sightings[index], name):
+            raise InvalidValue(
+                f"sighting {index + 1} is a clicked point and has no {name}: choose a ball's"
+            )
     sightings[index] = replace(sightings[index], **changes)
     moved = set(changes) - {"use"}
     _write(scene, sightings, [None if moved and i == index else i for i in range(len(sightings))])

@@ -49,7 +49,7 @@ def camera_step(scene: Any) -> Step:
         return Step("done", "The document brought the camera's pose.")
     if report.changed:
         return Step("doubt", "Sightings changed since: calibrate again.")
-    if not report.verdict:
+    if report.searched or not report.verdict:
         return Step("next", "Balls were found again: calibrate to use them.")
     return _judged(report)
 
@@ -61,6 +61,8 @@ def model_step(scene: Any) -> Step:
     cell = bare_cell(scene)
     if cell.camera.camera_from_world is None:
         return Step("waiting", "Calibrate first: a picture has no scale without it.")
+    if scene.monocell_cell.outdated and count_objects(scene):
+        return Step("doubt", scene.monocell_cell.outdated)
     if cell.sketches:
         count = len(cell.sketches)
         return Step("next", f"{count} picked in the document: press Solve All.")

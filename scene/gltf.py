@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ import bpy
 from ..core.atomic import atomic_path
 from ..core.camera import Camera
 from ..core.cell import Cell
+from ..core.document.cell_file import picture_from
 from ..core.document.entries import camera_entry, composite_entry, object_entry
 from ..core.document.reference_entries import reference_entry
 from ..core.errors import InvalidValue, RenderFailed
@@ -49,7 +51,7 @@ def export_gltf(cell: Cell, path: str | Path) -> None:
     """
     if Path(path).suffix.lower() != ".glb":
         raise InvalidValue(f"{path}: a glTF export is one binary file; name it .glb")
-    with atomic_path(path) as temporary, _scene_of(cell):
+    with atomic_path(path) as temporary, _scene_of(_beside(cell, Path(path).parent)):
         temporary.unlink()
         _export(temporary)
         if not temporary.is_file():
@@ -64,6 +66,18 @@ def scene_extras(cell: Cell) -> dict[str, Any]:
         "camera": camera_entry(cell.camera),
         "references": [reference_entry(reference) for reference in cell.references],
     }
+
+
+def _beside(cell: Cell, folder: Path) -> Cell:
+    """Textures named from where the file will stand, so that whoever opens it finds them."""
+
+    def dressed(thing: Primitive) -> Primitive:
+        if thing.appearance is None:
+            return thing
+        look = thing.appearance.with_pictures(lambda name: picture_from(name, cell.folder, folder))
+        return replace(thing, appearance=look)
+
+    return replace(cell.with_objects(map(dressed, cell.objects)), folder=folder)
 
 
 @contextmanager

@@ -9,6 +9,8 @@ VERBS = (
     "open_cell",
     "open_gltf",
     "open_picture",
+    "estimate_lens",
+    "change_camera",
     "drop_picture",
     "look_through",
     "show_picture",

@@ -7,7 +7,7 @@ import bpy
 
 from ..background_job import WorksInBackground
 from ..cell_scene import put_camera
-from ..document import bare_cell, write_scene
+from ..document import bare_cell, read_scene, write_scene
 from ..polls import NeedsCell
 from ..steps import FEWEST_SIGHTINGS
 
@@ -42,9 +42,13 @@ class Calibrate(WorksInBackground, NeedsCell, bpy.types.Operator):
 
     def finish(self, context, result):
         """Let document and Blender's camera take the pose."""
-        cell, report = result
+        from ..camera_change import mark_objects, same_camera
+
+        (cell, report), before = result, read_scene(context.scene)
         write_scene(context.scene, cell, report)
         put_camera(context.scene)
+        if not same_camera(before.camera, cell.camera):
+            mark_objects(context.scene, before)
         level = {"good": "INFO", "weak": "WARNING", "failed": "ERROR"}[report.verdict]
         self.report({level}, f"Calibration {report.verdict}: {report.rms_pixels:.2f} px rms")
         for warning in report.warnings:

@@ -8,7 +8,6 @@ import bpy
 from bpy.props import StringProperty
 
 from ..camera_inputs import stated_camera
-from ..panel_parts import camera_inputs
 from ..refusals import refuses
 from .open_picture import open_picture
 
@@ -29,8 +28,10 @@ class DropPicture(bpy.types.Operator):
 
     def draw(self, context):
         """Blender's call."""
+        from ..panel_lens import camera_inputs
+
         self.layout.label(text=Path(self.filepath).name, icon="IMAGE_DATA")
-        camera_inputs(self.layout, context.scene.monocell_inputs)
+        camera_inputs(self.layout, context)
 
     @refuses
     def execute(self, context):

@@ -6,7 +6,7 @@ from typing import ClassVar
 import bpy
 
 from ..background_job import WorksInBackground
-from ..document import bare_cell, write_scene
+from ..document import bare_cell, stored_report, write_scene
 from ..polls import NeedsCell
 
 
@@ -35,9 +35,10 @@ class FindAll(WorksInBackground, NeedsCell, bpy.types.Operator):
         return "Finding", len(cell.in_use().sightings), lambda watch: found(cell, watch)
 
     def finish(self, context, result):
-        """Keep what was found; a pose that is there already stays."""
-        scene = context.scene
-        write_scene(scene, bare_cell(scene), result)
+        """Keep what was found; a pose that is there already stays, and what was told of it."""
+        scene, before = context.scene, stored_report(context.scene)
+        calibrated = before is not None and before.verdict
+        write_scene(scene, bare_cell(scene), before.with_search(result) if calibrated else result)
         balls = sum(seen.ball is not None for seen in result.sightings)
         lost = [i + 1 for i, seen in enumerate(result.sightings) if seen.status == "rejected"]
         self.report({"WARNING" if lost else "INFO"}, f"{balls} balls found{_without(lost)}")

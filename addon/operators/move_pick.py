@@ -11,6 +11,7 @@ from ..model_changes import active_object, change_model, name_of
 from ..on_picture import OnPicture
 from ..picture_frame import picture_frame
 from ..polls import NeedsPose
+from ..preferences import settings
 from ..refusals import refuses, refuses_to_start
 
 REACH_POINTS = 14.0
@@ -51,7 +52,10 @@ class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
         if pressed and not thing.picks:
             return PASSED_ON
         sigma = context.scene.monocell_inputs.pick_sigma_pixels
-        self.name, self._handles = thing.name, Handles.of(cell, thing, sigma)
+        self.name, self._handles = (
+            thing.name,
+            Handles.of(cell, thing, sigma, settings(context).unit),
+        )
         self._held = self._pressed_on(context, event) if pressed else None
         if pressed and self._held is None:
             return PASSED_ON

@@ -52,8 +52,12 @@ def open_picture(operator, context, file, camera):
     """Open a cell of one picture file with its camera, and look through it."""
     from ...core.cell import Cell
 
-    cell = Cell(camera, picture=file.name, folder=file.parent)
+    cell, lens = Cell(camera, picture=file.name, folder=file.parent), context.scene.monocell_lens
     scene = open_scene(context, cell, file.stem)
+    # what was told of the lens goes with it
+    for known in lens.bl_rna.properties:
+        if not known.is_readonly:
+            setattr(scene.monocell_lens, known.identifier, getattr(lens, known.identifier))
     look_through(context)
     inner = camera.intrinsics
     operator.report({"INFO"}, f"{scene.name}: {inner.width} x {inner.height} px")

@@ -54,7 +54,7 @@ class PickReference(OnPicture, NeedsPose, bpy.types.Operator):
         from ..reference_drawing import draw_shown
 
         shown = self._under(context, context.area)
-        draw_shown(context, frame, self._cell.standing_camera(), shown, self.cursor)
+        draw_shown(context, frame, self._cell.standing_camera(), shown, self)
 
     def keys(self):
         """What the status bar tells."""

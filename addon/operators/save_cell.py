@@ -1,29 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Save the scene's cell as a document."""
 
+from pathlib import Path
 from typing import ClassVar
 
 import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..document import doubts_of, read_scene
+from ..document import doubts_of
 from ..polls import NeedsCell
 from ..refusals import refuses
 
 
 class SaveCell(NeedsCell, bpy.types.Operator, ExportHelper):
-    """Save camera, sightings, references and all objects, hidden ones too, as a cell document"""
+    """Save all of the cell, hidden objects too, as one cell document, the scene's own"""
 
     bl_idname = "monocell.save_cell"
     bl_label = "Save Cell Document"
-    bl_options: ClassVar = {"REGISTER"}
+    bl_options: ClassVar = {"REGISTER", "UNDO"}
 
     filename_ext = ".json"
     filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
 
     def invoke(self, context, event):
-        """Offer the name that it was opened from."""
+        """Offer the name that it was opened from or last saved by."""
         stored = context.scene.monocell_cell
         self.filepath = stored.path or bpy.path.clean_name(context.scene.name) + ".cell.json"
         return super().invoke(context, event)
@@ -31,11 +32,10 @@ class SaveCell(NeedsCell, bpy.types.Operator, ExportHelper):
     @refuses
     def execute(self, context):
         """Write it whole or not at all."""
-        from ...core.document.cell_file import write_cell
+        from ..saving import save_scene
 
-        path = bpy.path.abspath(self.filepath)
-        cell = read_scene(context.scene)
-        write_cell(cell, path)
+        path = Path(bpy.path.abspath(self.filepath))
+        cell = save_scene(context.scene, path)
         self.report({"INFO"}, f"{path}: {len(cell.objects)} objects saved")
         for doubt in doubts_of(context.scene):
             self.report({"WARNING"}, doubt)

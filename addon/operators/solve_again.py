@@ -39,6 +39,7 @@ class SolveAgain(NeedsPose, bpy.types.Operator):
         done = model(read_scene(scene), sigma, joint=self.joint)
         write_scene(scene, done.cell, stored_report(scene))
         told = [*done.warnings, *show_objects(scene, done.cell)]
+        scene.monocell_cell.outdated = ""
         self.report({"INFO"}, f"{len(done.results)} objects solved from their picks")
         for warning in (*told, *(w for result in done.results for w in result.warnings)):
             self.report({"WARNING"}, warning)

@@ -66,22 +66,27 @@ class LensCalibration:
 
 
 def calibrate_lens(
-    names: Sequence[str], read: Read, board: Board, model: str = "auto"
+    names: Sequence[str],
+    read: Read,
+    board: Board,
+    model: str = "auto",
+    *,
+    watch: Callable[[str], None] = lambda _: None,
 ) -> LensCalibration:
     """Calibrate a lens from pictures of a board; `read` gives the pixels of a named picture.
 
     `model` is a distortion model, or `auto`: the smallest that foretells unseen corners as well as
     the best. Pictures without a usable board, of another size than most, or that contradict the
-    others are rejected and named.
+    others are rejected and named. `watch` is told each picture and model before it is worked on.
 
     Raises TooFewPictures for fewer than three usable ones, BoardNotFound where no picture shows the
     board (with the board that was seen instead), InvalidValue for an unknown model.
     """
     if model != "auto" and model not in MODELS:
         raise InvalidValue(f"--model {model}: is none of auto, {', '.join(MODELS)}")
-    views, reports, board, size = _seen(names, read, board)
+    views, reports, board, size = _seen(names, read, board, watch)
     _refuse_few(views, reports, names, read, board)
-    fits = _fits(views, size, MODELS if model == "auto" else (model,))
+    fits = _fits(views, size, MODELS if model == "auto" else (model,), watch)
     scores: tuple[ModelScore, ...] = ()
     if model == "auto":
         fit, scores = _chosen(fits)
@@ -100,7 +105,7 @@ def calibrate_lens(
 
 
 def _seen(
-    names: Sequence[str], read: Read, board: Board
+    names: Sequence[str], read: Read, board: Board, watch: Callable[[str], None]
 ) -> tuple[list[BoardView], dict[str, PictureReport], Board, tuple[int, int]]:
     """What every picture shows, those of the most frequent size being views."""
     found: dict[str, BoardView] = {}
@@ -108,6 +113,7 @@ def _seen(
     reports: dict[str, PictureReport] = {}
     decided = False
     for name in dict.fromkeys(names):
+        watch(name)
         try:
             picture = read(name)
             if not decided:
@@ -175,10 +181,14 @@ def _hint(names: Sequence[str], read: Read, board: Board) -> str | None:
 
 
 def _fits(
-    views: Sequence[BoardView], size: tuple[int, int], models: Sequence[str]
+    views: Sequence[BoardView],
+    size: tuple[int, int],
+    models: Sequence[str],
+    watch: Callable[[str], None],
 ) -> list[LensFit]:
     fits, refusals = [], []
     for model in models:
+        watch(model)
         try:
             fits.append(first_fit(views, size, model))
             if model == "plumb_bob" and len(models) > 1:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,16 +24,21 @@ PLACE_SIGMA, SIZE_SIGMA = 1e-3, 1e-6
 
 
 def followed(
-    camera: Camera, references: References, things: Sequence[Primitive], solved: Sequence[str]
+    camera: Camera,
+    references: References,
+    things: Sequence[Primitive],
+    solved: Sequence[str],
+    held: Collection[str] = (),
 ) -> tuple[Primitive, ...]:
     """All objects, those without picks that stand on or hang on others moved after these.
 
     `solved` are the names of those that picks have placed. An object that is held by references
-    alone stays where it was put, as does one whose relations hold. What moves keeps its covariance.
+    alone stays where it was put, unless it is one of `held`, as does one whose relations hold. What
+    moves keeps its covariance. Raises NotConverged for relations that contradict each other.
     """
     now = {thing.name: thing for thing in things}
     for name in [thing.name for thing in things if thing.name not in solved]:
-        if not _is_off(now[name], references, now):
+        if not _is_off(now[name], references, now, by_all=name in held):
             continue
         before = now[name]
         now[name] = _of_its_size(before)
@@ -52,13 +57,15 @@ def _of_its_size(thing: Primitive) -> Primitive:
     return replace(thing, known=dict(zip(thing.size_names, map(float, thing.sizes), strict=True)))
 
 
-def _is_off(thing: Primitive, references: References, things: Mapping[str, Primitive]) -> bool:
-    """Whether a relation to another object does not hold."""
+def _is_off(
+    thing: Primitive, references: References, things: Mapping[str, Primitive], *, by_all: bool
+) -> bool:
+    """Whether a relation to another object, or with `by_all` to anything, does not hold."""
     holds = holds_of(thing, references, list(things))
     return any(
         float(np.abs(hold.rows(things, references).values).max(initial=0.0)) > HOLDS
         for hold in holds
-        if any(target.is_object for target in hold.targets)
+        if by_all or any(target.is_object for target in hold.targets)
     )
 
 

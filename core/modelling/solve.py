@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from ..arrays import positive
@@ -65,7 +65,13 @@ class Modelling:
     warnings: tuple[str, ...]
 
 
-def model(cell: Cell, pick_sigma_pixels: float = 1.0, *, joint: bool = False) -> Modelling:
+def model(
+    cell: Cell,
+    pick_sigma_pixels: float = 1.0,
+    *,
+    joint: bool = False,
+    held: Collection[str] = (),
+) -> Modelling:
     """Solve every sketch of a cell, and again every object that has picks.
 
     Each is solved after what it stands on or is held by; references made from objects follow them.
@@ -74,14 +80,15 @@ def model(cell: Cell, pick_sigma_pixels: float = 1.0, *, joint: bool = False) ->
     keeps its calibrated camera: otherwise a second run would count the same picks twice.
 
     The objects come first, in their order, then the solved sketches. Objects without picks stay as
-    they are, but for those that other objects hold: they follow.
+    they are, but for those that other objects hold: they follow. Those named in `held` follow what
+    references hold them, too.
 
     Raises what `solve_sketch` raises; the cell is then as it was.
     """
     work = _Work.of(cell, _checked_sigma(pick_sigma_pixels))
     while work.waiting:
         work.solve_level()
-    return work.finished(joint)
+    return work.finished(joint, held)
 
 
 def model_cell(
@@ -134,14 +141,14 @@ class _Work:
             sketches=tuple(self.waiting.values()),
         )
 
-    def finished(self, joint: bool) -> Modelling:
+    def finished(self, joint: bool, held: Collection[str]) -> Modelling:
         """All objects fitted with what they share, in the order of the document."""
         fit = self._fit(joint=False)
         for _ in range(JOINT_ROUNDS if joint else 0):
             self._take(fit)
             fit = self._fit(joint=True)
         self._take(fit)
-        self._follow()
+        self._follow(held)
         objects = {thing.name: thing for thing in self.cell.objects}
         ordered = tuple(objects[name] for name in self.order)
         results = [
@@ -156,13 +163,19 @@ class _Work:
         cell = replace(self.cell, objects=ordered, sketches=())
         return Modelling(cell, tuple(results), (*self.warnings, *_pulled(fit)))
 
-    def _follow(self) -> None:
+    def _follow(self, held: Collection[str]) -> None:
         """What nobody picked and an object holds goes where that has gone."""
         if len(self.chosen) == len(self.cell.objects):
             return
-        camera = self.cell.standing_camera()
-        things = followed(camera, self.references(), self.cell.objects, list(self.chosen))
-        self.cell = replace(self.cell, objects=things)
+        camera, own = self.cell.standing_camera(), self.cell.objects
+        # a reference that is an object's face goes with the object
+        things = [_by_feature(thing, self.cell) for thing in own]
+        moved = followed(camera, self.references(), things, list(self.chosen), held)
+        objects = [
+            before if now is thing else replace(now, on=before.on, relations=before.relations)
+            for before, thing, now in zip(own, things, moved, strict=True)
+        ]
+        self.cell, _ = resolve_references(self.cell.with_objects(objects), self.sigma)
 
     def references(self) -> dict[str, Reference]:
         """What stands, by name; a face of an object is taken from the object itself."""

@@ -13,6 +13,7 @@ import numpy as np
 from ..arrays import Array
 from ..camera import Camera
 from ..errors import PictureError
+from ..length_unit import MILLIMETRES, LengthUnit
 from ..primitives import Box, Primitive, Prism
 from .overlay_label import Color, Label, Picture, place_label
 from .wireframe import Polyline, finite_parts, wireframe
@@ -34,6 +35,8 @@ DIAGONAL_PER_LINE = 800.0
 DIAGONAL_PER_CAPITAL = 145.0
 HALO_OPACITY, HIDDEN_OPACITY = 0.55, 0.7
 SMALLEST_CAPITAL = 7.0
+# an error below this, in metres, is told with one digit more
+SMALL_SIGMA = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,15 +80,15 @@ def draw_overlay(
     return picture
 
 
-def caption(thing: Primitive) -> str:
-    """The sizes in millimetres, with ± 1 sigma where a size was solved and its error is known."""
+def caption(thing: Primitive, unit: LengthUnit = MILLIMETRES) -> str:
+    """The sizes in a unit, with ± 1 sigma where a size was solved and its error is known."""
     sigmas = thing.size_sigma()
     texts = [
-        _millimetres(size, None if sigmas is None else sigmas[i])
+        _told(size, None if sigmas is None else sigmas[i], unit)
         for i, size in enumerate(thing.sizes)
     ]
     if isinstance(thing, Box):
-        return f"{' × '.join(texts)} mm"
+        return f"{' × '.join(texts)} {unit.sign}"
     named = [
         f"{name.replace('_', ' ')} {text}"
         for name, text, size in zip(thing.size_names, texts, thing.sizes, strict=True)
@@ -94,7 +97,7 @@ def caption(thing: Primitive) -> str:
     ]
     if isinstance(thing, Prism):
         named = [f"{len(thing.polygon)} corners", *named]
-    return ", ".join(named) + " mm"
+    return ", ".join(named) + f" {unit.sign}"
 
 
 def blend_lines(
@@ -114,12 +117,12 @@ def plain_name(name: str) -> str:
     return unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode() or "object"
 
 
-def _millimetres(size: float, sigma: float | None) -> str:
+def _told(size: float, sigma: float | None, unit: LengthUnit) -> str:
     # a size that was given has no error of its own to show
     if sigma is None or sigma == 0:
-        return f"{1e3 * size:.1f}"
-    digits = 2 if 1e3 * sigma < 0.1 else 1
-    return f"{1e3 * size:.{digits}f} ± {1e3 * sigma:.{digits}f}"
+        return unit.number(size)
+    finer = 1 if sigma < SMALL_SIGMA else 0
+    return f"{unit.number(size, finer)} ± {unit.number(sigma, finer)}"
 
 
 def _ring(pixels: Array) -> list[Array]:

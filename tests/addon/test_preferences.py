@@ -42,3 +42,24 @@ def test_the_keys_belong_to_verbs_that_are_there(module):
     assert {verb for verb, *_ in keymap.ENTRIES} <= {f"monocell.{v}" for v in operators.VERBS}
     keys = [(key, tuple(held)) for _, key, held in keymap.ENTRIES]
     assert len(set(keys)) == len(keys)
+
+
+def test_captions_labels_and_places_are_told_in_the_user_s_unit(tmp_path):
+    from dataclasses import replace
+
+    import bench_cell
+    import numpy as np
+    from monocell.addon.pick_plans import plan_of
+    from monocell.addon.pick_session import PickSession
+    from monocell.core.length_unit import UNITS
+    from monocell.core.picture.overlay import caption
+
+    assert caption(bench_cell.BOX, UNITS["in"]) == "7.874 × 5.512 × 4.724 in"
+    known = replace(bench_cell.BOX, covariance=np.diag([0.0] * 6 + [1e-6] * 3))
+    assert caption(known, UNITS["cm"]) == "20.00 ± 0.10 × 14.00 ± 0.10 × 12.00 ± 0.10 cm"
+    session = PickSession(
+        plan_of("box", "STANDING"), bench_cell.CAMERA, bench_cell.FLOOR, unit="in"
+    )
+    place = session.place(bench_cell.CAMERA.project(np.zeros((1, 3)))[0])
+    assert place.startswith("x 0.00   y 0.00   z 0.00 in   ± ")
+    assert place.endswith(" in")

@@ -80,7 +80,8 @@ def test_the_calibrated_camera_is_the_true_one(worked):
     assert off < 3 * np.linalg.norm(found.centre_sigma())
     assert set(worked[1]["calibrated"]) <= {"used", "doubtful"}
     report = json.loads(worked[1]["report"])
-    assert report["surface"].endswith("mm on table")
+    assert report["surface"] == "table"
+    assert 0 < report["surface_millimetres"] < 2
 
 
 def test_a_clicked_point_is_a_pixel_of_the_picture_as_it_came(worked):

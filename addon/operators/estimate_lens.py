@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Estimate the lens: pictures of a board go in, the camera to open a picture with comes out."""
+
+from pathlib import Path
+from typing import ClassVar
+
+import bpy
+from bpy.props import CollectionProperty, StringProperty
+
+from ..background_job import WorksInBackground
+
+
+class EstimateLens(WorksInBackground, bpy.types.Operator):
+    """Choose three or more pictures of the board, held at angles and up to the picture's rim"""
+
+    bl_idname = "monocell.estimate_lens"
+    bl_label = "Estimate Lens"
+    bl_options: ClassVar = {"REGISTER", "UNDO"}
+
+    directory: StringProperty(
+        name="Folder",
+        description="Where the pictures are; with none chosen, all in it are taken",
+        subtype="DIR_PATH",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    files: CollectionProperty(
+        name="Pictures",
+        description="Names of the pictures in the folder",
+        type=bpy.types.OperatorFileListElement,
+        options={"SKIP_SAVE"},
+    )
+    filter_image: bpy.props.BoolProperty(
+        name="Pictures only",
+        description="Show pictures in the file browser",
+        default=True,
+        options={"HIDDEN"},
+    )
+    filter_folder: bpy.props.BoolProperty(
+        name="Folders too",
+        description="Show folders in the file browser",
+        default=True,
+        options={"HIDDEN"},
+    )
+
+    def invoke(self, context, event):
+        """Let the pictures be chosen."""
+        # Blender's file browser calls execute, and that must not freeze the window
+        self._chosen_by_hand = True
+        folder = context.scene.monocell_inputs.picture or context.scene.monocell_cell.folder
+        self.directory = self.directory or str(Path(bpy.path.abspath(folder or "//")))
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context):
+        """Start where they were chosen by hand; a script waits."""
+        if getattr(self, "_chosen_by_hand", False):
+            return self.start(context)
+        return super().execute(context)
+
+    def draw(self, context):
+        """Blender's call: the board beside the files."""
+        from ..panel_lens import board_inputs
+
+        board_inputs(self.layout, context.scene.monocell_lens)
+
+    def prepare(self, context):
+        """What is done in the background."""
+        from ..lens_estimate import MODELS_TRIED, board_of, estimated, pictures_in
+
+        inputs = context.scene.monocell_lens
+        folder = Path(bpy.path.abspath(self.directory))
+        names = pictures_in(folder, [file.name for file in self.files if file.name])
+        board, model = board_of(inputs), inputs.model
+        total = len(names) + (MODELS_TRIED if model == "auto" else 1)
+        return "Estimating", total, lambda watch: estimated(folder, names, board, model, watch)
+
+    def finish(self, context, result):
+        """Keep it as the camera of the picture that is opened next, or of the open cell."""
+        from ..lens_estimate import dump_estimate, told_estimate
+
+        scene = context.scene
+        scene.monocell_lens.estimate = dump_estimate(result)
+        scene.monocell_inputs.camera_source = "BOARD"
+        level = {"good": "INFO", "weak": "WARNING", "failed": "ERROR"}[result.verdict]
+        for warning in result.warnings:
+            self.report({"WARNING"}, warning)
+        self.report({level}, told_estimate(result))
+        return {"FINISHED"}
