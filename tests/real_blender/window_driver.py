@@ -22,11 +22,16 @@ PAUSE = 0.25
 drawn = []
 
 
+class NoView(Exception):
+    """No 3D viewport is on the screen, as while a file is chosen."""
+
+
 def view():
     window = bpy.context.window_manager.windows[0]
-    area = max(
-        (a for a in window.screen.areas if a.type == "VIEW_3D"), key=lambda a: a.width * a.height
-    )
+    areas = [area for area in window.screen.areas if area.type == "VIEW_3D"]
+    if not areas:
+        raise NoView
+    area = max(areas, key=lambda area: area.width * area.height)
     # in a quad view the last one turns freely
     region = [r for r in area.regions if r.type == "WINDOW"][-1]
     return window, area, region
@@ -155,4 +160,5 @@ def run(steps):
 
     bpy.context.preferences.view.show_splash = False
     bpy.types.SpaceView3D.draw_handler_add(lambda: drawn.append(True), (), "WINDOW", "POST_PIXEL")
+    # a file that is loaded on the way does not end it
     bpy.app.timers.register(tick, first_interval=2.0, persistent=True)
