@@ -12,7 +12,7 @@ from window_run import in_window
 
 pytestmark = [pytest.mark.real_blender, pytest.mark.slow]
 
-LEFT = ("area", "full", "workspace", "scene", "window", "file")
+LEFT = ("area", "full", "workspace", "scene", "window", "closed", "working", "file")
 
 
 def seen(pixels):
@@ -106,6 +106,13 @@ def test_local_view_gets_the_camera_back_and_shows_what_is_new(worked):
 def test_a_view_that_is_left_while_picking_leaves_nothing_behind(worked, name):
     assert not worked[1][f"left_{name}"]
     assert not worked[1][f"picking_{name}"]
+
+
+def test_a_window_that_is_closed_ends_what_it_was_doing(worked):
+    found = worked[1]
+    assert found["was_closed"]
+    assert found["was_working"]
+    assert found["title_working"] == ""
 
 
 def test_undo_meanwhile_does_not_disturb_a_pick(worked):
