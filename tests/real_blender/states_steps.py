@@ -267,24 +267,25 @@ def loaded():
     save("loaded")
 
 
+def modelled():
+    """Box and drum, without a click."""
+    for verb, picks in ((bpy.ops.monocell.add_box, "box"), (bpy.ops.monocell.add_cylinder, "drum")):
+        in_view(verb, "EXEC_DEFAULT", True, picks=job["picks"][picks])
+    yield from settle()
+
+
+RUNS = {
+    "views": (quad, local, hidden, in_edit_mode, loaded),
+    "left": (modelled, other_area, full_screen, other_workspace, other_scene, undone_meanwhile),
+    "windows": (modelled, other_scene, second_window, closed_window),
+}
+
+
 def steps():
     yield from show_sidebar()
     in_view(bpy.ops.monocell.open_cell, "EXEC_DEFAULT", True, filepath=job["document"])
     yield from settle()
-    for part in (
-        quad,
-        local,
-        hidden,
-        other_area,
-        full_screen,
-        other_workspace,
-        other_scene,
-        undone_meanwhile,
-        second_window,
-        closed_window,
-        in_edit_mode,
-        loaded,
-    ):
+    for part in RUNS[job["run"]]:
         yield from part()
 
 
