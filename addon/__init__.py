@@ -6,13 +6,14 @@ def register():
     """Put all of it in place. OpenCV and the graphics module wait until they are needed."""
     import bpy
 
-    from . import keymap, menus, overlay, properties, tools
+    from . import file_events, keymap, menus, overlay, properties, tools
 
     properties.register()
     for cls in _classes():
         bpy.utils.register_class(cls)
     menus.register()
     overlay.register()
+    file_events.register()
     keymap.register()
     tools.register()
 
@@ -21,10 +22,11 @@ def unregister():
     """Take it away, in reverse."""
     import bpy
 
-    from . import keymap, menus, overlay, properties, tools
+    from . import file_events, keymap, menus, overlay, properties, tools
 
     tools.unregister()
     keymap.unregister()
+    file_events.unregister()
     overlay.unregister()
     menus.unregister()
     for cls in reversed(_classes()):
@@ -36,6 +38,7 @@ def _classes():
     from . import (
         drops,
         lists,
+        menus,
         operators,
         panel_camera,
         panel_model,
@@ -60,5 +63,6 @@ def _classes():
         panel_object.ObjectPanel,
         panel_model.ReferencesPanel,
         panel_model.AllObjectsPanel,
+        menus.ExportMenu,
         panel_use.UsePanel,
     )

@@ -16,6 +16,7 @@ from ..core.picture.pictures import Picture, read_picture
 from ..core.picture.snapping import snapped
 from ..core.picture.wireframe import wireframe
 from ..core.primitives import Primitive
+from .camera_view import hidden_names
 from .document import bare_cell, read_scene
 
 # pixels of the picture
@@ -41,10 +42,11 @@ class Aiming:
     corners: Array
 
     @staticmethod
-    def of(scene: Any) -> Aiming:
-        """The picture that the scene shows, and the corners of its objects."""
-        cell = bare_cell(scene)
-        return Aiming(_shown(scene, cell), modelled_corners(cell.camera, _objects(scene)))
+    def of(scene: Any, space: Any) -> Aiming:
+        """The picture that the scene shows, and the corners of the objects that `space` shows."""
+        cell, hidden = bare_cell(scene), hidden_names(scene, space)
+        seen = [thing for thing in _objects(scene) if thing.name not in hidden]
+        return Aiming(_shown(scene, cell), modelled_corners(cell.camera, seen))
 
     def aimed(self, pixel: Array, radius: float) -> Aim:
         """A picture's corner within `radius` pixels, else a modelled one, else an edge.

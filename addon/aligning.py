@@ -7,12 +7,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import count
 
-from ..core.align.align_cell import align_cell
+from ..core.align.align_cell import align_cell, with_followers
 from ..core.align.propose import Proposal, propose
 from ..core.align.result import Aligned
 from ..core.cell import Cell
 from ..core.errors import InvalidValue
 from ..core.picture.pictures import Picture, read_picture
+from ..core.primitives import Primitive
 from ..core.reference import ReferencePlane
 from ..core.references.resolve import resolve_references
 
@@ -20,13 +21,18 @@ from ..core.references.resolve import resolve_references
 def aligned(
     cell: Cell, names: Sequence[str] | None, watch: Callable[[str], None]
 ) -> tuple[Cell, Aligned]:
-    """The cell with the named objects (None: all) aligned, and what was found of each.
+    """The cell as it is, and what was found of each of the named objects (None: all).
 
     Raises what `align_cell` raises, PictureError for a picture that can't be read, and InvalidValue
     for a cell without one.
     """
-    moved, found = align_cell(cell, _picture(cell), names, watch=watch)
-    return resolve_references(moved)[0], found
+    _, found = align_cell(cell, _picture(cell), names, watch=watch)
+    return cell, found
+
+
+def with_taken(cell: Cell, taken: Sequence[Primitive]) -> Cell:
+    """The cell with those objects that were taken, new or in place, and all that hangs on them."""
+    return resolve_references(with_followers(cell, taken))[0]
 
 
 def proposed(cell: Cell, on: str, watch: Callable[[str], None]) -> tuple[Proposal, ...]:

@@ -11,7 +11,9 @@ from collections.abc import Callable
 from threading import Thread
 from typing import Any
 
-from ..core.errors import MonocellError
+import bpy
+
+from ..core.errors import InvalidValue, MonocellError
 
 # how often Blender looks after the work, seconds
 TICK = 0.08
@@ -101,11 +103,11 @@ class WorksInBackground:
             return {"CANCELLED"}
         try:
             title, total, work = self.prepare(context)
+            self._begun_with = self.state_of(context.scene)
         except MonocellError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         state.title, state.share, state.name, state.cancel = title, 0.0, "", False
-        self._scene, self._text = context.scene.name, context.scene.monocell_cell.text
         self._job = Job(work, total)
         self._timer = context.window_manager.event_timer_add(TICK, window=context.window)
         context.window_manager.modal_handler_add(self)
@@ -127,36 +129,42 @@ class WorksInBackground:
         if self._job.running or event.type != "TIMER":
             return {"RUNNING_MODAL"} if event.type == "ESC" else {"PASS_THROUGH"}
         self._end(context)
-        return self._ended(context)
+        return self._ended(context, event)
 
     def cancel(self, context):
         """Blender's own way out, when a file is loaded or the window closes."""
         self._job.watch.stop()
         self._end(context)
 
-    def _ended(self, context):
+    def state_of(self, scene):
+        """What the work began with, and what has to be the same when it ends."""
+        return scene.session_uid, scene.monocell_cell.text
+
+    def arrived(self, context, event, result):
+        """What follows when the work is done in a window."""
+        return self.finish(context, result)
+
+    def _ended(self, context, event):
         try:
             result = self._job.result()
             if context.window_manager.monocell_work.cancel:
                 # it had come to its end just before it could be told
                 raise Stopped
+            if self.state_of(context.scene) != self._begun_with:
+                raise InvalidValue("The cell was changed meanwhile: start again for it as it is")
+            return self.arrived(context, event, result)
         except Stopped:
             self.report({"INFO"}, "Cancelled: nothing was changed")
-            return {"CANCELLED"}
         except MonocellError as error:
             self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        scene = context.scene
-        if scene.name != self._scene or scene.monocell_cell.text != self._text:
-            self.report({"ERROR"}, "The cell was changed meanwhile: start again for it as it is")
-            return {"CANCELLED"}
-        return self.finish(context, result)
+        return {"CANCELLED"}
 
     def _end(self, context):
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.monocell_work.title = ""
-        if context.workspace is not None:
-            context.workspace.status_text_set(None)
+        # the user may have gone to another workspace meanwhile
+        for workspace in bpy.data.workspaces:
+            workspace.status_text_set(None)
         _redraw(context)
 
 

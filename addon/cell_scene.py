@@ -35,16 +35,17 @@ def open_scene(context: Any, cell: Cell, title: str) -> Any:
     The picture is read first, so that a refusal (PictureError, InvalidValue) changes nothing.
     Returns the scene.
     """
-    from ..core.picture.pictures import read_picture
+    from ..core.picture.pictures import read_picture_told
 
-    name = shown_first(cell)
-    picture = None if name is None else read_picture(cell.path_of(name), cell.camera.intrinsics)
+    name, picture, told = shown_first(cell), None, ()
+    if name is not None:
+        picture, told = read_picture_told(cell.path_of(name), cell.camera.intrinsics)
     with _new_scene(title) as scene:
         write_scene(scene, cell)
         _measure_in(scene, settings(context).unit)
         put_camera(scene)
         if picture is not None:
-            show_picture(scene, name, picture)
+            show_picture(scene, name, picture, told)
         for missing in show_objects(scene, cell):
             raise PictureError(missing)
     context.window.scene = scene
@@ -65,12 +66,16 @@ def shown_first(cell: Cell) -> str | None:
     return cell.sightings[0].picture if cell.sightings else None
 
 
-def show_picture(scene: Any, name: str, picture: Any) -> None:
-    """Show a picture (H, W, 3), undistorted, behind the camera view. Raises PictureError."""
+def show_picture(scene: Any, name: str, picture: Any, told: tuple[str, ...] = ()) -> None:
+    """Show a picture (H, W, 3), undistorted, behind the camera view. Raises PictureError.
+
+    `told` is what is said of it while it is shown.
+    """
     from ..scene.background import show_background
 
     show_background(_camera_of(scene), picture, bare_cell(scene).camera.intrinsics)
     scene.monocell_cell.shown_picture = name
+    scene.monocell_cell.shown_told = "; ".join(told)
 
 
 def show_named_picture(scene: Any, name: str) -> None:
@@ -78,11 +83,20 @@ def show_named_picture(scene: Any, name: str) -> None:
 
     Raises PictureError.
     """
-    from ..core.picture.pictures import read_picture
+    from ..core.picture.pictures import read_picture_told
 
     if scene.monocell_cell.shown_picture != name:
         cell = bare_cell(scene)
-        show_picture(scene, name, read_picture(cell.path_of(name), cell.camera.intrinsics))
+        picture, told = read_picture_told(cell.path_of(name), cell.camera.intrinsics)
+        show_picture(scene, name, picture, told)
+
+
+def show_picture_again(scene: Any) -> None:
+    """Show the picture anew where it went with a camera that was deleted. Raises PictureError."""
+    stored = scene.monocell_cell
+    if stored.shown_picture and not stored.camera.data.background_images:
+        name, stored.shown_picture = stored.shown_picture, ""
+        show_named_picture(scene, name)
 
 
 def put_camera(scene: Any) -> None:
@@ -93,6 +107,7 @@ def put_camera(scene: Any) -> None:
     place_camera(ob, scene.render, cell.camera.intrinsics, _pose_or_guess(cell))
     ob.lock_location = ob.lock_rotation = ob.lock_scale = (True, True, True)
     scene.camera = ob
+    _unhide(scene, ob)
 
 
 def camera_stands(scene: Any) -> bool:
@@ -115,18 +130,26 @@ def camera_stands(scene: Any) -> bool:
 
 
 def look_through(context: Any) -> None:
-    """Turn the window's largest 3D viewport to the camera, the picture filling its free part."""
+    """Turn the window's largest 3D viewport to the camera, the picture filling its free part.
+
+    In a quad view that is the part that looks through it already, else the one that turns freely.
+    """
     area = viewport(context)
     if area is None:
         return
+    from .camera_view import camera_region, view_of, window_regions
     from .picture_frame import fit_picture, free_part
 
-    space = area.spaces.active
-    region = next(r for r in area.regions if r.type == "WINDOW")
-    _aim(context.scene, space.region_3d)
-    space.region_3d.view_perspective = "CAMERA"
+    scene, space = context.scene, area.spaces.active
     space.use_local_camera = False
-    fit_picture(context.scene, region, space, free_part(area, region))
+    region = camera_region(scene, area) or window_regions(area)[-1]
+    view = view_of(space, region)
+    _aim(scene, view)
+    view.view_perspective = "CAMERA"
+    fit_picture(scene, region, view, free_part(area, region))
+    if space.local_view is not None:
+        # Blender hides the picture with its camera
+        scene.camera.local_view_set(space, True)
     # the picture shows through the models; grid and cursor would only lie on top of it
     space.shading.show_xray, space.shading.xray_alpha = True, 0.35
     space.overlay.show_floor = space.overlay.show_cursor = False
@@ -141,17 +164,6 @@ def viewport(context: Any) -> Any | None:
     screen = context.window.screen if context.window else None
     areas = [area for area in screen.areas if area.type == "VIEW_3D"] if screen else []
     return max(areas, key=lambda area: area.width * area.height, default=None)
-
-
-def looks_through(scene: Any, space: Any) -> bool:
-    """Whether a 3D viewport shows the picture: it looks through the cell's own camera."""
-    camera = space.camera if space.use_local_camera else scene.camera
-    return (
-        space.region_3d.view_perspective == "CAMERA"
-        and camera is not None
-        and camera == scene.monocell_cell.camera
-        and not space.region_quadviews
-    )
 
 
 def _pose_or_guess(cell: Cell) -> Pose:
@@ -186,8 +198,16 @@ def _places(cell: Cell) -> list[Array]:
 
 
 def _camera_of(scene: Any) -> Any:
-    """The cell's camera; made, or linked again, where a user removed it."""
+    """The cell's camera; made, or linked again, where a user removed it.
+
+    A scene that was made with the settings of another gets one of its own, with the same picture.
+    """
     stored = scene.monocell_cell
+    scenes = () if stored.camera is None else stored.camera.users_scene
+    if scenes and scene not in scenes:
+        data = stored.camera.data.copy()
+        stored.camera = stored.camera.copy()
+        stored.camera.data = data
     if stored.camera is None:
         stored.camera = bpy.data.objects.new("Cell camera", bpy.data.cameras.new("Cell camera"))
         data = stored.camera.data
@@ -197,6 +217,16 @@ def _camera_of(scene: Any) -> Any:
     if scene.objects.get(stored.camera.name) != stored.camera:
         scene.collection.objects.link(stored.camera)
     return stored.camera
+
+
+def _unhide(scene: Any, ob: Any) -> None:
+    """Show a camera that the user hid, alone or with a collection: Blender hides its picture."""
+    ob.hide_viewport = False
+    if ob.name not in scene.collection.objects and not ob.visible_get():
+        scene.collection.objects.link(ob)
+    for layer in scene.view_layers:
+        if ob.name in layer.objects:
+            ob.hide_set(False, view_layer=layer)
 
 
 @contextmanager

@@ -23,8 +23,10 @@ from ..core.document.json_text import dumped
 from ..core.errors import PictureError
 from ..core.reference import PendingReference, ReferencePlane, kind_of
 from ..core.sighting import SphereSighting
+from .modes import leave_modes
 from .report import Report, dump_report, parse_report
 
+STAYS = "belongs to {} and was not changed; make it local first (Object > Relations > Make Local)"
 FLOOR = ReferencePlane("floor", [0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
 
 
@@ -72,6 +74,13 @@ def read_scene(scene: Any) -> Cell:
     )
 
 
+def doubts_of(scene: Any) -> tuple[str, ...]:
+    """Words on what Blender shows of the objects and the document does not hold."""
+    from ..scene.objects import is_modelled, left_out
+
+    return tuple(told for ob in scene.objects if is_modelled(ob) for told in left_out(ob))
+
+
 def bare_cell(scene: Any) -> Cell:
     """The cell with its objects as they were last written; cheap enough for panels."""
     stored = scene.monocell_cell
@@ -99,6 +108,12 @@ def write_scene(scene: Any, cell: Cell, report: Report | None = None) -> None:
     """
     if not any(isinstance(reference, ReferencePlane) for reference in cell.references):
         cell = replace(cell, references=(*cell.references, FLOOR))
+    leave_modes(scene)
+    store_cell(scene, cell, report)
+
+
+def store_cell(scene: Any, cell: Cell, report: Report | None) -> None:
+    """The same for what changes no object: an edit of a mesh may go on."""
     folder = cell.folder.resolve()
     stored = scene.monocell_cell
     stored.folder = str(folder)
@@ -111,17 +126,23 @@ def write_scene(scene: Any, cell: Cell, report: Report | None = None) -> None:
 def show_objects(scene: Any, cell: Cell, names: Collection[str] | None = None) -> tuple[str, ...]:
     """Build the objects of `cell`, or those of `names`, in place where they are there already.
 
-    Returns a word on every object whose texture is missing: it has its colour alone.
+    Returns a word on every object whose texture is missing, which has its colour alone, and on
+    every one that belongs to another file, which stays as it is there.
     """
-    from ..scene.objects import build_object, find_object
+    from ..scene.objects import build_object, find_object, library_of
     from ..scene.textures import is_textured, paint
 
+    leave_modes(scene)
     collection, told = objects_collection(scene), []
     for thing in cell.objects:
         if names is not None and thing.name not in names:
             continue
-        _leave_edit_mode(find_object(thing.name, collection))
-        ob = build_object(thing, collection)
+        there = find_object(thing.name, scene)
+        library = None if there is None else library_of(there)
+        if library is not None:
+            told.append(f"{thing.name}: {STAYS.format(library)}")
+            continue
+        ob = build_object(thing, collection, scene)
         if is_textured(thing):
             try:
                 made = paint(ob.data, thing, cell.folder)
@@ -135,24 +156,20 @@ def show_objects(scene: Any, cell: Cell, names: Collection[str] | None = None) -
     return tuple(told)
 
 
-def _leave_edit_mode(ob: Any | None) -> None:
-    """Blender lets no mesh be rebuilt while it is edited."""
-    layer = bpy.context.view_layer
-    if ob is None or not ob.data.is_editmode or ob.name not in layer.objects:
-        return
-    # the mode is left by the active object, which another may have become meanwhile
-    before, layer.objects.active = layer.objects.active, ob
-    bpy.ops.object.mode_set(mode="OBJECT")
-    layer.objects.active = before
-
-
 def objects_collection(scene: Any) -> Any:
-    """Where the cell's objects are built; made, or linked again, where a user removed it."""
+    """Where the cell's objects are built; made, or linked again, where a user removed it.
+
+    A scene that was made with the settings of another gets one of its own.
+    """
     stored = scene.monocell_cell
-    if stored.collection is None:
+    if stored.collection in list(scene.collection.children_recursive):
+        return stored.collection
+    others = (other for other in bpy.data.scenes if other != scene)
+    if stored.collection is None or any(
+        stored.collection in list(other.collection.children_recursive) for other in others
+    ):
         stored.collection = bpy.data.collections.new("Cell objects")
-    if stored.collection not in scene.collection.children_recursive:
-        scene.collection.children.link(stored.collection)
+    scene.collection.children.link(stored.collection)
     return stored.collection
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -37,14 +37,23 @@ class Shown:
     line: Array
 
 
-def shown_at(cell: Cell, pixel: Array, reach: float, *, axis: bool = False) -> Shown | None:
+def shown_at(
+    cell: Cell,
+    pixel: Array,
+    reach: float,
+    *,
+    axis: bool = False,
+    hidden: Collection[str] = (),
+) -> Shown | None:
     """The edge within `reach` pixels of a pixel (2,), else the face there, else the plane there.
 
-    Of a round side the axis is meant; with `axis` of whatever object is there. None where the pixel
-    shows nothing that could be a reference, such as a ball.
+    Of a round side the axis is meant; with `axis` of whatever object is there. Objects of the names
+    `hidden` are looked through. None where the pixel shows nothing that could be a reference, such
+    as a ball.
     """
     camera = cell.standing_camera()
-    near = [thing for thing in cell.objects if _near(thing, camera, pixel, reach)]
+    there = [thing for thing in cell.objects if thing.name not in hidden]
+    near = [thing for thing in there if _near(thing, camera, pixel, reach)]
     origin, rays = camera.rays_world(pixel[None])
     met = [hits(thing, origin, rays) for thing in near]
     depths = np.array([hit.depth[0] for hit in met])

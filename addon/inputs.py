@@ -9,6 +9,7 @@ from bpy.props import (
     StringProperty,
 )
 
+from ..core.sighting import LEAST_RADIUS, MOST_RADIUS
 from .fields import LENS_MODELS, length_property, pixels_property, place_property, unit_property
 
 CENTRE_TOLD = "Centre of the ball, or the point, in the world, metres"
@@ -104,7 +105,8 @@ class SceneInputs(bpy.types.PropertyGroup):
         "Ball radius",
         "Radius of the ball of new sightings, metres",
         default=0.04,
-        min=1e-5,
+        min=LEAST_RADIUS,
+        max=MOST_RADIUS,
         soft_max=0.5,
     )
     position_unit: unit_property()

@@ -52,9 +52,17 @@ class ReferenceList(bpy.types.UIList):
 
 
 class ObjectList(bpy.types.UIList):
-    """The cell's objects."""
+    """The cell's objects, of all that the scene has."""
 
     bl_idname = "MONOCELL_UL_objects"
+
+    def filter_items(self, context, data, property):
+        """Blender's question what is listed, and in which order."""
+        from ..scene.objects import is_modelled
+
+        typed = self.filter_name.lower()
+        shown = [is_modelled(ob) and typed in ob.name.lower() for ob in data.objects]
+        return [self.bitflag_filter_item if show else 0 for show in shown], []
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_property, index):
         """One row."""

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import Any
 
 from ..core.cell import Cell
 from ..core.errors import InvalidValue, PickError
 from ..core.reference import PendingReference, Reference, ReferenceLine
 from .document import objects_collection, read_scene
+from .modes import leave_modes
 
 
 def add_modelled(context: Any, kind: str, asked: Any) -> Any:
@@ -43,8 +45,9 @@ def add_modelled(context: Any, kind: str, asked: Any) -> Any:
     modelled = solve_sketch(camera, sketch, cell.placed_references, cell.objects, sigma)
     # refuses a name that is taken, before anything is built
     cell.with_objects((*cell.objects, modelled.object))
-    select_only(context, build_object(modelled.object, objects_collection(scene)))
-    return modelled
+    leave_modes(scene)
+    ob = build_object(modelled.object, objects_collection(scene))
+    return replace(modelled, warnings=(*modelled.warnings, *select_only(context, ob)))
 
 
 def standing_cell(scene: Any) -> Cell:
@@ -73,12 +76,23 @@ def active_reference(scene: Any, cell: Cell, kind: str) -> Reference:
     return reference
 
 
-def select_only(context: Any, ob: Any) -> None:
-    """Make an object the active one, and the only one selected."""
+def select_only(context: Any, ob: Any) -> tuple[str, ...]:
+    """Make a new object the active one, and the only one selected.
+
+    Returns a word on one that is not seen, because its collection is not.
+    """
+    layer, space = context.view_layer, context.space_data
     for other in context.selected_objects:
         other.select_set(False)
-    context.view_layer.objects.active = ob
-    ob.select_set(True)
+    if ob.name in layer.objects:
+        layer.objects.active = ob
+        ob.select_set(True)
+        if space is not None and space.type == "VIEW_3D" and space.local_view is not None:
+            ob.local_view_set(space, True)
+    if ob.visible_get():
+        return ()
+    held = ob.users_collection[0].name
+    return (f"{ob.name}: is not seen, as {held} is hidden or excluded; show it in the outliner",)
 
 
 def free_name(cell: Cell, kind: str) -> str:

@@ -3,7 +3,7 @@
 
 import bpy
 
-from .cell_scene import looks_through
+from .camera_view import camera_region, picking_region, region_under, view_of
 from .document import bare_cell
 from .picture_frame import free_part, picture_frame
 from .preferences import settings
@@ -41,39 +41,46 @@ class OnPicture:
     `keys()`, the icons and words of the status bar. Cancelling leaves nothing behind.
     """
 
+    # whether a click means the corner or edge near it
+    snaps = True
+
     def begin(self, context, event):
-        """Become modal in the viewport that looks through the cell's camera."""
-        scene, space = context.scene, context.space_data
-        if space is None or space.type != "VIEW_3D" or not looks_through(scene, space):
-            self.report({"ERROR"}, "Look through the cell's camera first: picks are made there")
-            return {"CANCELLED"}
+        """Become modal where a viewport looks through the cell's camera. Raises InvalidValue."""
+        picking_region(context, (event.mouse_x, event.mouse_y))
+        self.enter(context, event)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def enter(self, context, event):
+        """Begin to draw and to follow the mouse; for an operator that is modal already."""
         from .aiming import Aiming
         from .loupe import shown_pixels
 
+        scene, self._mouse = context.scene, (event.mouse_x, event.mouse_y)
         self.settings = settings(context)
-        self._area = context.area.as_pointer()
+        self._area, self._scene = context.area.as_pointer(), scene.session_uid
         self._intrinsics = bare_cell(scene).camera.intrinsics
-        self._aiming, self._aimed = Aiming.of(scene), None
+        self._aiming, self._aimed = Aiming.of(scene, context.space_data), None
         self._shown_pixels = shown_pixels(scene) if self.settings.loupe else None
         self.cursor, self._turned, self._loupe = None, False, None
-        self._follow(context.area, event)
+        self._follow(context, context.area, event)
         self._handle = bpy.types.SpaceView3D.draw_handler_add(
             self._draw, (context,), "WINDOW", "POST_PIXEL"
         )
-        context.window_manager.modal_handler_add(self)
         self.tell(context)
         context.area.tag_redraw()
-        return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
         """One event: the operator's own, or something for Blender."""
         area = self._its_area(context)
         if area is None or (event.type in CANCEL_EVENTS and event.value == "PRESS"):
             self.end(context)
+            if area is None:
+                self.report({"WARNING"}, "The view was left: nothing was changed")
             return {"CANCELLED"}
         self._turned = event.ctrl
         if event.type == "MOUSEMOVE":
-            self._follow(area, event)
+            self._follow(context, area, event)
         if event.type == "MIDDLEMOUSE" and not (event.shift or event.ctrl or event.alt):
             # turning would leave the camera, and with it the picture
             return self._pan(context, area, event)
@@ -81,7 +88,7 @@ class OnPicture:
             area.tag_redraw()
             return {"PASS_THROUGH"}
         if event.type == "LEFTMOUSE":
-            self._follow(area, event)
+            self._follow(context, area, event)
         ended = self.handle(context, area, event)
         if ended is not None:
             return ended
@@ -96,17 +103,19 @@ class OnPicture:
     def end(self, context):
         """Stop drawing and give the status bar back."""
         bpy.types.SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
-        context.workspace.status_text_set(None)
+        # while a file is loaded there is none in the context
+        (context.workspace or bpy.data.workspaces[0]).status_text_set(None)
         area = self._its_area(context)
         if area is not None:
             area.tag_redraw()
 
     def frame(self, context, area):
         """The picture's frame in the area; None while the view looks elsewhere."""
-        space = area.spaces.active
-        if not looks_through(context.scene, space):
+        region = self._region(context, area)
+        if region is None:
             return None
-        return picture_frame(context.scene, window_region(area), space, self._intrinsics)
+        view = view_of(area.spaces.active, region)
+        return picture_frame(context.scene, region, view, self._intrinsics)
 
     def pixel(self, context, area):
         """The pixel under the cursor; None beside the picture or under a sidebar."""
@@ -114,7 +123,7 @@ class OnPicture:
         if frame is None:
             return None
         x, y = self.cursor
-        left, bottom, right, top = free_part(area, window_region(area))
+        left, bottom, right, top = free_part(area, self._region(context, area))
         if not (left <= x <= right and bottom <= y <= top):
             return None
         return frame.picture_pixel(x, y) if frame.contains(x, y) else None
@@ -152,14 +161,19 @@ class OnPicture:
         draw_crosses(at, WHITE, scale)
         if aim.told:
             draw_ring(at[0], self.settings.active_color, scale)
-        if self._shown_pixels is not None:
-            from .loupe import Loupe
-
-            free = free_part(context.area, context.region)
-            loupe = Loupe(self.cursor, free, self.settings.loupe_zoom, scale)
-            self._loupe = loupe.box
-            loupe.draw(self._shown_pixels, centre[0], lines, scale)
+        self.paint_loupe(context, centre[0], lines)
         return f"snapped to {aim.told}" if aim.told else ""
+
+    def paint_loupe(self, context, centre, lines):
+        """The picture's pixels round `centre` (2,) of the view, enlarged, with lines over them."""
+        if self._shown_pixels is None:
+            return
+        from .loupe import Loupe
+
+        scale, free = context.preferences.system.ui_scale, free_part(context.area, context.region)
+        loupe = Loupe(self.cursor, free, self.settings.loupe_zoom, scale)
+        self._loupe = loupe.box
+        loupe.draw(self._shown_pixels, centre, lines, scale)
 
     def paint_words(self, context, rows):
         """Words and their colours beside the cursor, where no sidebar and no loupe is."""
@@ -171,7 +185,8 @@ class OnPicture:
     def tell(self, context):
         """Name the keys in the status bar."""
         snapping = "Do not snap" if self.settings.snap else "Snap"
-        keys = (*self.keys(), ("EVENT_CTRL", f"   {snapping}"), *PAN_KEYS)
+        turns = (("EVENT_CTRL", f"   {snapping}"),) if self.snaps else ()
+        keys = (*self.keys(), *turns, *PAN_KEYS)
 
         def draw(header, context):
             row = header.layout.row(align=True)
@@ -181,30 +196,31 @@ class OnPicture:
 
         context.workspace.status_text_set(draw)
 
-    def _follow(self, area, event):
+    def _region(self, context, area):
+        return camera_region(context.scene, area, self._mouse)
+
+    def _follow(self, context, area, event):
         """Keep where the mouse is in the region: events count pixels, so its middle is meant."""
-        region = window_region(area)
+        self._mouse = event.mouse_x, event.mouse_y
+        region = self._region(context, area) or region_under(area, self._mouse)
         self.cursor = (event.mouse_x - region.x + 0.5, event.mouse_y - region.y + 0.5)
 
     def _pan(self, context, area, event):
         if event.value == "PRESS":
-            with context.temp_override(area=area, region=window_region(area)):
+            with context.temp_override(area=area, region=region_under(area, self._mouse)):
                 bpy.ops.view3d.move("INVOKE_DEFAULT")
         return {"RUNNING_MODAL"}
 
     def _its_area(self, context):
+        """The viewport that it was begun in, while that shows the scene that it was begun for."""
         areas = context.window.screen.areas if context.window else ()
-        return next((area for area in areas if area.as_pointer() == self._area), None)
+        area = next((area for area in areas if area.as_pointer() == self._area), None)
+        if area is None or area.type != "VIEW_3D" or context.scene.session_uid != self._scene:
+            return None
+        return area
 
     def _draw(self, context):
-        area = context.area
-        if area is None or area.as_pointer() != self._area:
+        area = self._its_area(context)
+        if area is None or context.area != area or context.region != self._region(context, area):
             return
-        frame = self.frame(context, area)
-        if frame is not None:
-            self.paint(context, frame)
-
-
-def window_region(area):
-    """The region of an area that shows the scene."""
-    return next(region for region in area.regions if region.type == "WINDOW")
+        self.paint(context, self.frame(context, area))

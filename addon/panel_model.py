@@ -21,9 +21,10 @@ from .operators.pick_reference import PickReference
 from .operators.propose import Propose
 from .operators.remove_reference import RemoveReference
 from .operators.solve_again import SolveAgain
-from .panel_parts import CellPanel, next_thing, standing
+from .panel_parts import CellPanel, next_thing, paragraph, standing
 from .steps import count_objects, is_posed, model_step
 
+REVIEW = "See the picture: what is green would be taken. Enter takes it, Esc leaves all as it was."
 TOOLS = (
     (AddBox, "Box", "MESH_CUBE"),
     (AddCylinder, "Cylinder", "MESH_CYLINDER"),
@@ -47,6 +48,9 @@ class ModelPanel(CellPanel, bpy.types.Panel):
     def draw(self, context):
         """Blender's call."""
         layout, scene = self.layout, context.scene
+        if context.window_manager.monocell_work.reviewing:
+            paragraph(layout, context, REVIEW, "INFO")
+            return
         step = model_step(scene)
         next_thing(layout, context, step)
         if not is_posed(scene):
@@ -60,7 +64,7 @@ class ModelPanel(CellPanel, bpy.types.Panel):
         if count_objects(scene):
             stored = scene.monocell_cell
             layout.template_list(
-                *(ObjectList.bl_idname, "", stored.collection, "objects", stored, "object_index"),
+                *(ObjectList.bl_idname, "", scene, "objects", stored, "object_index"),
                 rows=2,
                 maxrows=3,
             )

@@ -42,7 +42,7 @@ class ObjectPanel(CellPanel, bpy.types.Panel):
     def draw(self, context):
         """Blender's call."""
         from ..core.errors import MonocellError
-        from ..scene.objects import read_object
+        from ..scene.objects import left_out, read_object
 
         layout = self.layout
         try:
@@ -50,6 +50,8 @@ class ObjectPanel(CellPanel, bpy.types.Panel):
         except MonocellError as error:
             paragraph(layout, context, str(error), "ERROR")
             return
+        for doubt in left_out(active_object(context)):
+            paragraph(layout, context, doubt, "ERROR")
         draw_sizes(layout, context, thing)
         numbers(layout, place_rows(thing, settings(context).unit))
         draw_holding(layout, thing)

@@ -6,17 +6,19 @@ from typing import ClassVar
 
 import bpy
 
-from .cell_scene import looks_through
+from .camera_view import camera_region
 from .document import bare_cell, has_cell
 from .operators.change_camera import ChangeCamera
 from .operators.find_pictures import FindPictures
 from .operators.look_through import LookThrough
 from .operators.open_cell import OpenCell
 from .operators.open_picture import OpenPicture
-from .operators.open_sample import OpenSample
+from .operators.open_sample import SAMPLES, OpenSample
 from .panel_lens import camera_inputs
-from .panel_parts import CellPanel, next_thing, numbers, standing
+from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
 from .steps import picture_step
+
+SAMPLE_ICONS = {"STACK": "OUTLINER_OB_CAMERA", "TABLE": "FILE_3D"}
 
 
 class PicturePanel(CellPanel, bpy.types.Panel):
@@ -34,6 +36,8 @@ class PicturePanel(CellPanel, bpy.types.Panel):
         layout, scene = self.layout, context.scene
         next_thing(layout, context, picture_step(scene))
         if has_cell(scene):
+            if scene.monocell_cell.shown_told:
+                paragraph(layout, context, scene.monocell_cell.shown_told, "INFO")
             _draw_opened(layout, context)
         else:
             _draw_start(layout, context)
@@ -42,7 +46,8 @@ class PicturePanel(CellPanel, bpy.types.Panel):
 def _draw_start(layout, context):
     inputs = context.scene.monocell_inputs
     column = layout.column(align=True)
-    column.operator(OpenSample.bl_idname, icon="OUTLINER_OB_CAMERA")
+    for name, label, _ in SAMPLES:
+        column.operator(OpenSample.bl_idname, text=label, icon=SAMPLE_ICONS[name]).sample = name
     column.operator(OpenCell.bl_idname, icon="FILE_FOLDER")
     layout.separator(type="LINE")
     layout.prop(inputs, "picture", text="", placeholder="Picture")
@@ -60,8 +65,8 @@ def _draw_opened(layout, context):
     if stored.camera is not None and len(stored.camera.data.background_images):
         plate = stored.camera.data.background_images[0]
         row = layout.row(align=True)
-        seen = "HIDE_OFF" if plate.show_background_image else "HIDE_ON"
-        row.prop(plate, "show_background_image", text="", icon=seen)
+        eye = "HIDE_OFF" if plate.show_background_image else "HIDE_ON"
+        row.prop(plate, "show_background_image", text="", icon=eye)
         # which of the cell's pictures is seen is told where it is faded
         told = f"Opacity of {PurePath(stored.shown_picture).name}" if stored.shown_picture else ""
         row.prop(plate, "alpha", text=told or "Opacity", slider=True)
@@ -69,7 +74,8 @@ def _draw_opened(layout, context):
         row.operator(OpenCell.bl_idname, text="", icon="FILE_FOLDER")
     if picture_step(scene).mark == "doubt" and stored.shown_picture:
         layout.operator(FindPictures.bl_idname, icon="VIEWZOOM")
-    if not looks_through(scene, context.space_data):
+    seen = stored.camera is not None and stored.camera.visible_get(viewport=context.space_data)
+    if not seen or camera_region(scene, context.area) is None:
         layout.operator(LookThrough.bl_idname, icon="VIEW_CAMERA")
 
 

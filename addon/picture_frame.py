@@ -69,14 +69,13 @@ class PictureFrame:
         return self.left <= x <= self.right and self.bottom <= y <= self.top
 
 
-def picture_frame(scene: Any, region: Any, space: Any, intrinsics: Intrinsics) -> PictureFrame:
+def picture_frame(scene: Any, region: Any, view: Any, intrinsics: Intrinsics) -> PictureFrame:
     """The frame of the scene's camera in a region that looks through it.
 
-    From the view's zoom and offset, as Blender itself draws it: in double precision, where
+    From the zoom and offset of its `view`, as Blender itself draws it: in double precision, where
     projecting the frame's corners through float32 matrices would lose a tenth of a pixel. The
     camera's sensor fit is HORIZONTAL, as `scene.blender_camera` sets it.
     """
-    view = space.region_3d
     zoom = _zoom_factor(view.view_camera_zoom)
     width = region.width * zoom
     height = width * _height_share(scene.render)
@@ -86,14 +85,13 @@ def picture_frame(scene: Any, region: Any, space: Any, intrinsics: Intrinsics) -
 
 
 def fit_picture(
-    scene: Any, region: Any, space: Any, free: tuple[float, float, float, float]
+    scene: Any, region: Any, view: Any, free: tuple[float, float, float, float]
 ) -> None:
-    """Zoom and pan the camera view so that the picture fills `free`: left, bottom, right, top."""
+    """Zoom and pan a camera view so that the picture fills `free`: left, bottom, right, top."""
     left, bottom, right, top = free
     share = 1.0 - 2 * MARGIN_SHARE
     width = share * min(right - left, (top - bottom) / _height_share(scene.render))
     zoom = (2.0 * math.sqrt(max(width, 1.0) / region.width) - math.sqrt(2.0)) * 50.0
-    view = space.region_3d
     view.view_camera_zoom = min(max(zoom, LEAST_ZOOM), MOST_ZOOM)
     factor = _zoom_factor(view.view_camera_zoom)
     view.view_camera_offset = (

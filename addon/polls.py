@@ -10,6 +10,10 @@ class NeedsCell:
     @classmethod
     def poll(cls, context):
         """Blender's question whether the operator can run now."""
+        library = context.scene.library
+        if library is not None:
+            cls.poll_message_set(f"This scene is linked: open {library.filepath} to change it")
+            return False
         if has_cell(context.scene):
             return True
         cls.poll_message_set("This scene holds no cell: open a cell document or a picture first")

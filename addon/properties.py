@@ -12,6 +12,7 @@ from bpy.props import (
     StringProperty,
 )
 
+from ..core.sighting import LEAST_RADIUS, MOST_RADIUS
 from .document import bare_cell
 from .fields import length_property, place_property
 from .inputs import CENTRE_TOLD, SceneInputs
@@ -50,7 +51,10 @@ def _radius(row):
 
 
 def _set_radius(row, value):
-    edit_sighting(row.id_data, row.index, radius=float(decimals([value])[0]))
+    # a point has none; the field is not shown for it
+    if row.kind == "ball":
+        radius = min(max(float(decimals([value])[0]), LEAST_RADIUS), MOST_RADIUS)
+        edit_sighting(row.id_data, row.index, radius=radius)
 
 
 class SightingRow(bpy.types.PropertyGroup):
@@ -66,7 +70,12 @@ class SightingRow(bpy.types.PropertyGroup):
     )
     center: place_property("Place", CENTRE_TOLD, get=_place, set=_set_place)
     radius: length_property(
-        "Radius", "Radius of the ball, metres", min=1e-5, get=_radius, set=_set_radius
+        "Radius",
+        "Radius of the ball, metres",
+        min=LEAST_RADIUS,
+        max=MOST_RADIUS,
+        get=_radius,
+        set=_set_radius,
     )
     picture: StringProperty(name="Picture", description="Its name as the document has it")
     status: StringProperty(name="Status", description="What the search or calibration made of it")
@@ -84,11 +93,11 @@ class ReferenceRow(bpy.types.PropertyGroup):
 
 def _active_index(cell):
     active = bpy.context.view_layer.objects.active
-    return cell.collection.objects.find(active.name) if active and cell.collection else -1
+    return cell.id_data.objects.find(active.name) if active else -1
 
 
 def _activate(cell, index):
-    ob = cell.collection.objects[index]
+    ob = cell.id_data.objects[index]
     for other in bpy.context.selected_objects:
         other.select_set(False)
     # hidden and excluded objects can't be selected, and are listed all the same
@@ -107,10 +116,14 @@ class SceneCell(bpy.types.PropertyGroup):
     report: StringProperty(name="Report", description="The last search or calibration, JSON")
     folder: StringProperty(name="Folder", description="Where picture names start")
     path: StringProperty(name="File", description="Document it was read from or last saved as")
+    folder_beside: StringProperty(
+        name="Folder beside", description="The same as seen from the .blend file when it was saved"
+    )
     outdated: StringProperty(
         name="Outdated", description="Why objects have to be solved again; empty: they need not"
     )
     shown_picture: StringProperty(name="Shown", description="Picture behind the camera view")
+    shown_told: StringProperty(name="Told", description="What is to say of that picture")
     camera: PointerProperty(
         type=bpy.types.Object, name="Camera", description="The camera that took the picture"
     )
@@ -146,6 +159,9 @@ class Work(bpy.types.PropertyGroup):
         name="Done", description="How much of it is done", min=0.0, max=1.0, subtype="FACTOR"
     )
     cancel: BoolProperty(name="Cancel", description="Whether it was told to end")
+    reviewing: BoolProperty(
+        name="Reviewing", description="Whether what would change is shown, and the model is not"
+    )
     picking: BoolProperty(
         name="Picking", description="Whether an object is being picked, and sightings are hidden"
     )

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 from ..core.cell import Cell
@@ -46,9 +46,14 @@ def remove_sighting(scene: Any, index: int) -> Sighting:
 def edit_sighting(scene: Any, index: int, **changes: Any) -> None:
     """Change fields of one sighting; what is known of the others stays, and of it what still holds.
 
-    Raises InvalidValue.
+    Raises InvalidValue, also for a field that only balls have.
     """
     sightings = list(bare_cell(scene).sightings)
+    for name in changes:
+        if not hasattr(sightings[index], name):
+            raise InvalidValue(
+                f"sighting {index + 1} is a clicked point and has no {name}: choose a ball's"
+            )
     sightings[index] = replace(sightings[index], **changes)
     moved = set(changes) - {"use"}
     _write(scene, sightings, [None if moved and i == index else i for i in range(len(sightings))])
@@ -83,31 +88,48 @@ def named_from(cell: Cell, picture: str, folder: Path | None = None) -> str:
         return str(path.resolve())
 
 
-def rename_pictures(scene: Any, folder: Path) -> int:
-    """Name the pictures that are missing by files of the same name in `folder`. Returns how many.
+def rename_pictures(scene: Any, folder: Path) -> tuple[int, tuple[str, ...]]:
+    """Name the pictures that are missing by files of the same name in `folder` or below it.
 
-    Raises PictureError when none is missing, or for the first that is not there either.
+    Returns how many were found, and the names of those that still are missing. Raises PictureError
+    when none is missing, when none is there, and for one that is not of the camera's size.
     """
+    from ..core.picture.pictures import read_picture
+
     cell = bare_cell(scene)
-    named = [s.picture for s in cell.sightings] + ([cell.picture] if cell.picture else [])
-    missing = {name for name in named if not cell.path_of(name).is_file()}
+    named = {s.picture for s in cell.sightings} | ({cell.picture} if cell.picture else set())
+    missing = sorted(name for name in named if not cell.path_of(name).is_file())
     if not missing:
         raise PictureError("no picture of this cell is missing")
-    for name in sorted(missing):
-        if not (folder / Path(name).name).is_file():
-            raise PictureError(f"{folder / Path(name).name}: there is no such picture either")
-    # the document's names start there from now on: its old folder may be gone
+    there = {name: path for name in missing if (path := _found_in(folder, name)) is not None}
+    if not there:
+        raise PictureError(f"{folder / Path(missing[0]).name}: there is no such picture either")
+    for path in there.values():
+        read_picture(path, cell.camera.intrinsics)
+    _name_pictures(scene, cell, folder, there)
+    return len(there), tuple(name for name in missing if name not in there)
+
+
+def _found_in(folder: Path, name: str) -> Path | None:
+    """Where a folder has a picture: by the end of its old path, or by its own name alone."""
+    parts = PurePath(name).parts
+    places = (folder.joinpath(*parts[i:]) for i in range(len(parts)) if parts[i] != "..")
+    return next((path for path in places if path.is_file()), None)
+
+
+def _name_pictures(scene: Any, cell: Cell, folder: Path, there: Mapping[str, Path]) -> None:
+    """Let the document's names start at `folder` from now on: its old one may be gone."""
     moved = replace(cell, folder=folder.resolve())
-    new = {
-        name: Path(name).name if name in missing else named_from(moved, name, cell.folder)
-        for name in named
-    }
-    sightings = tuple(replace(s, picture=new.get(s.picture, s.picture)) for s in cell.sightings)
-    picture = new.get(cell.picture, cell.picture) if cell.picture else None
-    write_scene(scene, replace(moved, sightings=sightings, picture=picture), stored_report(scene))
-    stored = scene.monocell_cell
-    stored.shown_picture = new.get(stored.shown_picture, stored.shown_picture)
-    return len(missing)
+
+    def new(name: str) -> str:
+        return named_from(moved, str(there.get(name, name)), cell.folder)
+
+    sightings = tuple(replace(s, picture=new(s.picture)) for s in cell.sightings)
+    picture = new(cell.picture) if cell.picture else None
+    stored, report = scene.monocell_cell, stored_report(scene)
+    shown = new(stored.shown_picture) if stored.shown_picture else ""
+    write_scene(scene, replace(moved, sightings=sightings, picture=picture), report)
+    stored.shown_picture = shown
 
 
 def _write(scene: Any, sightings: Iterable[Sighting], kept: Iterable[int | None]) -> None:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import PurePath
 from typing import Any, Literal
 
 from .document import bare_cell, has_cell, stored_report
@@ -30,8 +29,10 @@ def picture_step(scene: Any) -> Step:
     if not shown:
         return Step("doubt", "The document names no picture: add sightings with theirs.")
     cell = bare_cell(scene)
-    if not cell.path_of(shown).is_file():
-        return Step("doubt", f"{PurePath(shown).name} is no longer in its folder.")
+    for name in (shown, *_active_picture(scene)):
+        path = cell.path_of(name)
+        if not path.is_file():
+            return Step("doubt", f"{path.name} is no longer in {path.parent}. Is it elsewhere?")
     return Step("done")
 
 
@@ -88,8 +89,16 @@ def is_posed(scene: Any) -> bool:
 
 def count_objects(scene: Any) -> int:
     """How many objects the scene's cell holds."""
-    collection = scene.monocell_cell.collection
-    return len(collection.objects) if has_cell(scene) and collection is not None else 0
+    from ..scene.objects import is_modelled
+
+    return sum(is_modelled(ob) for ob in scene.objects) if has_cell(scene) else 0
+
+
+def _active_picture(scene: Any) -> tuple[str, ...]:
+    """That of the active sighting: not all are looked up with every redraw."""
+    stored = scene.monocell_cell
+    rows, index = stored.sightings, stored.sighting_index
+    return (rows[index].picture,) if 0 <= index < len(rows) else ()
 
 
 def _to_calibrate(count: int, used: int) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rotation vectors to rotation matrices and back, exact from zero to half a turn."""
+"""Rotation vectors to rotation matrices and back, exact from zero to half a turn; other forms."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def vector_from_rotation(rotation: ArrayLike) -> Array:
     Goes through the quaternion (Shepperd 1978: the largest component is computed first), which
     stays exact near half a turn, where the arc cosine of the trace does not.
     """
-    w, *v = _quaternion(np.asarray(rotation, dtype=float))
+    w, *v = quaternion_from_rotation(rotation)
     vector = np.array(v)
     sine = float(np.linalg.norm(vector))
     if sine < 1e-12:
@@ -50,8 +50,9 @@ def vector_from_rotation(rotation: ArrayLike) -> Array:
     return vector * (angle / sine)
 
 
-def _quaternion(r: Array) -> Array:
-    """(w, x, y, z) of unit length."""
+def quaternion_from_rotation(rotation: ArrayLike) -> Array:
+    """The quaternion (w, x, y, z) of unit length of a rotation matrix."""
+    r = np.asarray(rotation, dtype=float)
     squares = np.array(
         [
             1 + r[0, 0] + r[1, 1] + r[2, 2],
@@ -73,3 +74,17 @@ def _quaternion(r: Array) -> Array:
     row[largest] = squares[largest]
     unit: Array = row / np.linalg.norm(row)
     return unit
+
+
+def roll_pitch_yaw(rotation: ArrayLike) -> Array:
+    """The angles (3,) of URDF and SDF: `rotation == Rz(yaw) @ Ry(pitch) @ Rx(roll)`, radians.
+
+    Roll is taken from what is left when yaw is undone, which stays exact where pitch is a quarter
+    turn and only the two together are determined.
+    """
+    r = np.asarray(rotation, dtype=float)
+    yaw = float(np.arctan2(r[1, 0], r[0, 0]))
+    sine, cosine = np.sin(yaw), np.cos(yaw)
+    pitch = np.arctan2(-r[2, 0], cosine * r[0, 0] + sine * r[1, 0])
+    roll = np.arctan2(sine * r[0, 2] - cosine * r[1, 2], cosine * r[1, 1] - sine * r[0, 1])
+    return np.array([roll, pitch, yaw])

@@ -25,7 +25,12 @@ def fill_mesh(mesh: Any, shape: Tessellation) -> None:
 
 
 def mesh_vertices(mesh: Any) -> Array:
-    """The vertices of a mesh, (N, 3)."""
+    """The vertices of a mesh, (N, 3), as an edit that still goes on has them."""
+    if mesh.is_editmode:
+        import bmesh
+
+        edited = bmesh.from_edit_mesh(mesh).verts
+        return np.array([vertex.co for vertex in edited], dtype=float).reshape(-1, 3)
     values = np.empty(len(mesh.vertices) * 3, np.float32)
     mesh.vertices.foreach_get("co", values)
     return values.reshape(-1, 3).astype(float)

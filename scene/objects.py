@@ -36,28 +36,30 @@ BLENDER_NAME = "monocell_name"
 SAME = 1e-6
 
 
-def build_object(thing: Primitive, collection: Any) -> Any:
-    """Build `thing` in `collection`, or rebuild the object of its name there in place.
+def build_object(thing: Primitive, collection: Any, scene: Any = None) -> Any:
+    """Build `thing` in `collection`, or rebuild the object of its name in place.
 
-    Scale 1, the sizes in the mesh, the origin of the object's own frame. Returns the bpy object.
+    That is looked for in the collection, or in the whole of `scene`. Scale 1, the sizes in the
+    mesh, the origin of the object's own frame. Returns the bpy object.
     """
-    ob = find_object(thing.name, collection)
+    ob = find_object(thing.name, scene or collection)
     if ob is None:
         ob = bpy.data.objects.new(thing.name, bpy.data.meshes.new(thing.name))
         collection.objects.link(ob)
-    elif ob.data.users > 1:
+    elif ob.data.users > 1 or ob.data.library is not None:
         # a linked duplicate keeps the old shape
         ob.data = bpy.data.meshes.new(thing.name)
     fill_object(ob, thing)
     return ob
 
 
-def find_object(name: str, collection: Any) -> Any | None:
-    """The object of a collection that is modelled and has that name in the document, or None."""
-    ob = collection.objects.get(name)
-    if ob is not None and is_modelled(ob) and _name(ob) == name:
+def find_object(name: str, holder: Any) -> Any | None:
+    """The object of a collection or scene that is modelled and called so in the document."""
+    ob = holder.objects.get(name)
+    if ob is not None and is_modelled(ob) and document_name(ob) == name:
         return ob
-    return next((ob for ob in collection.objects if is_modelled(ob) and _name(ob) == name), None)
+    named = (ob for ob in holder.objects if is_modelled(ob) and document_name(ob) == name)
+    return next(named, None)
 
 
 def is_modelled(ob: Any) -> bool:
@@ -70,8 +72,37 @@ def built_name(ob: Any) -> str:
     return str(ob[ENTRY]["name"])
 
 
+def document_name(ob: Any) -> str:
+    """What a modelled object is called in the document: as the user renamed it, or as built."""
+    return str(ob[ENTRY]["name"] if ob.name == ob.get(BLENDER_NAME) else ob.name)
+
+
+def library_of(ob: Any) -> str | None:
+    """The .blend file that an object belongs to and is changed in; None for this one."""
+    if ob.library is not None:
+        return str(ob.library.filepath)
+    if ob.override_library is not None:
+        return str(ob.override_library.reference.library.filepath)
+    return None
+
+
+def left_out(ob: Any) -> tuple[str, ...]:
+    """Words on what Blender shows of a modelled object and `read_object` does not read."""
+    told = []
+    names = ", ".join(modifier.name for modifier in ob.modifiers if modifier.show_viewport)
+    if names:
+        told.append(f"its modifiers are no part of the model: apply or remove {names}")
+    keys = ob.data.shape_keys
+    if keys is not None and any(key.value and not key.mute for key in keys.key_blocks[1:]):
+        told.append("its shape keys are no part of the model: apply or remove them")
+    return tuple(f"{document_name(ob)}: {words}" for words in told)
+
+
 def fill_object(ob: Any, thing: Primitive) -> None:
     """Give an object the mesh, colour, place and entry of `thing`."""
+    if ob.data.shape_keys is not None:
+        # they hold the old vertices
+        ob.shape_key_clear()
     fill_mesh(ob.data, tessellated(thing))
     color = PLAIN if thing.appearance is None else thing.appearance.color
     ob.data.materials.clear()
@@ -97,7 +128,7 @@ def read_object(ob: Any) -> Primitive:
     if not is_modelled(ob):
         raise InvalidValue(f"{ob.name}: was not made by monocell, so its kind is not known")
     entry = ob[ENTRY].to_dict() | {"picks": json.loads(ob.get(PICKS, "{}"))}
-    built = replace(object_from_entry(entry, ob.name), name=_name(ob))
+    built = replace(object_from_entry(entry, ob.name), name=document_name(ob))
     built = replace(built, appearance=_appearance(ob, built.appearance))
     expected = np.array(matrix_of(built.world_from_object))
     now, vertices = world_matrix(ob), mesh_vertices(ob.data)
@@ -114,10 +145,6 @@ def read_object(ob: Any) -> Primitive:
         shape = scaled(shape, scale)
     centre = now[:3] @ [*shape.world_from_object.translation, 1.0]
     return replace(shape, world_from_object=Pose(pose.rotation, centre))
-
-
-def _name(ob: Any) -> str:
-    return ob[ENTRY]["name"] if ob.name == ob.get(BLENDER_NAME) else ob.name
 
 
 def _appearance(ob: Any, built: Appearance | None) -> Appearance | None:

@@ -22,20 +22,36 @@ def matrix_of(pose: Pose) -> Matrix:
 
 
 def stand(ob: Any, world_from_object: Pose) -> None:
-    """Place an object, its scale exactly 1 (Blender's own decomposition is 6e-8 off)."""
-    ob.matrix_world = matrix_of(world_from_object)
+    """Place an object, its scale exactly 1 (Blender's own decomposition is 6e-8 off).
+
+    It stays with its parent. What the parent's own place and scale do to it goes into its parent
+    inverse, so that it stands there upright even under a parent that would shear it.
+    """
+    matrix = matrix_of(world_from_object)
     if ob.parent is None:
-        ob.scale = (1.0, 1.0, 1.0)
+        ob.matrix_world = matrix
+    elif _hung_on_object(ob):
+        ob.matrix_parent_inverse = Matrix(np.linalg.inv(world_matrix(ob.parent)).tolist())
+        ob.matrix_basis = matrix
+    else:
+        ob.matrix_world = matrix
+        return
+    ob.scale = (1.0, 1.0, 1.0)
 
 
 def world_matrix(ob: Any) -> Array:
     """Where an object stands now, (4, 4).
 
-    Without parent and constraints this is the matrix of its own location, rotation and scale, which
-    is up to date at once; `matrix_world` waits for the next evaluation of the scene.
+    From the matrices of its own and its parents' location, rotation and scale, which are up to date
+    at once; `matrix_world` waits for the next evaluation of the scene. It is taken where only that
+    can tell: for constraints, and parents that are bones or vertices.
     """
-    free = ob.parent is None and not ob.constraints
-    return np.array(ob.matrix_basis if free else ob.matrix_world, dtype=float)
+    if ob.constraints or not (ob.parent is None or _hung_on_object(ob)):
+        return np.array(ob.matrix_world, dtype=float)
+    own = np.array(ob.matrix_basis, dtype=float)
+    if ob.parent is None:
+        return own
+    return world_matrix(ob.parent) @ np.array(ob.matrix_parent_inverse, dtype=float) @ own
 
 
 def pose_and_scale(ob: Any, mirror_axis: int = 2) -> tuple[Pose, Array]:
@@ -60,3 +76,8 @@ def pose_and_scale(ob: Any, mirror_axis: int = 2) -> tuple[Pose, Array]:
     if np.linalg.det(axes) < 0:
         axes[:, mirror_axis] *= -1
     return Pose(axes, matrix[:3, 3]), scale
+
+
+def _hung_on_object(ob: Any) -> bool:
+    """Whether the parent is an object as a whole; a curve may carry its children along itself."""
+    return ob.parent_type == "OBJECT" and ob.parent.type != "CURVE"

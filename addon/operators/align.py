@@ -9,10 +9,12 @@ from ..background_job import WorksInBackground
 from ..document import read_scene, show_objects, stored_report, write_scene
 from ..fields import everything_property, object_property
 from ..polls import NeedsPose
+from ..preferences import settings
+from ..reviewing import Reviewed
 
 
-class Align(WorksInBackground, NeedsPose, bpy.types.Operator):
-    """Refine objects on the edges of the picture; one that is not believed stays as it is"""
+class Align(Reviewed, WorksInBackground, NeedsPose, bpy.types.Operator):
+    """Refine objects on the picture's edges: shows what would move, to be taken or left"""
 
     bl_idname = "monocell.align"
     bl_label = "Align on Edges"
@@ -31,13 +33,25 @@ class Align(WorksInBackground, NeedsPose, bpy.types.Operator):
         total = len(cell.objects) if names is None else 1
         return "Aligning", total, lambda watch: aligned(cell, names, watch)
 
-    def finish(self, context, result):
-        """Show what moved, and say what was not believed and why."""
+    def offered(self, context, result):
+        """What would move, and what stays."""
+        from ..offer import offer_of_aligned
+
+        cell, aligned = result
+        return offer_of_aligned(cell.objects, aligned.objects, settings(context).unit)
+
+    def take(self, context, result, offer):
+        """Move what is taken, and say what was not believed and why."""
+        from ..aligning import with_taken
+
         cell, aligned = result
         scene, found = context.scene, aligned.objects
-        write_scene(scene, cell, stored_report(scene))
-        told = show_objects(scene, cell, [n for n, one in found.items() if one.believed])
-        moved = [one for one in found.values() if one.believed]
+        was = {thing.name: thing for thing in cell.objects}
+        now = with_taken(cell, offer.taken)
+        write_scene(scene, now, stored_report(scene))
+        # what stands on an aligned object has moved with it
+        told = show_objects(scene, now, [t.name for t in now.objects if t is not was[t.name]])
+        moved = [found[thing.name] for thing in offer.taken]
         far = max((one.moved_pixels for one in moved), default=0.0)
         self.report(
             {"INFO"},
@@ -45,11 +59,10 @@ class Align(WorksInBackground, NeedsPose, bpy.types.Operator):
             "it back",
         )
         doubts = [f"{n}: not aligned: {why}" for n, one in found.items() for why in one.reasons]
-        for warning in (
-            *aligned.warnings,
-            *told,
-            *doubts,
-            *(w for one in moved for w in one.warnings),
-        ):
+        for warning in (*aligned.warnings, *told, *doubts, *_warnings(moved)):
             self.report({"WARNING"}, warning)
         return {"FINISHED"}
+
+
+def _warnings(moved):
+    return [warning for one in moved for warning in one.warnings]

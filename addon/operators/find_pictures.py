@@ -31,6 +31,9 @@ class FindPictures(NeedsCell, bpy.types.Operator):
     def execute(self, context):
         """Name every picture that is missing by what lies in the folder."""
         folder = Path(bpy.path.abspath(self.directory))
-        count = rename_pictures(context.scene, folder)
+        count, missing = rename_pictures(context.scene, folder)
         self.report({"INFO"}, f"{count} pictures found in {folder}")
+        if missing:
+            told = ", ".join(missing[:3]) + (" ..." if len(missing) > 3 else "")
+            self.report({"WARNING"}, f"{len(missing)} still missing: {told}")
         return {"FINISHED"}

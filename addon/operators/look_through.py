@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..cell_scene import look_through, put_camera
+from ..cell_scene import look_through, put_camera, show_picture_again
 from ..polls import NeedsCell
 from ..refusals import refuses
 
@@ -22,4 +22,5 @@ class LookThrough(NeedsCell, bpy.types.Operator):
         """Place the camera, then turn the view."""
         put_camera(context.scene)
         look_through(context)
+        show_picture_again(context.scene)
         return {"FINISHED"}

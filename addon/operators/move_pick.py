@@ -6,10 +6,10 @@ from typing import ClassVar
 import bpy
 from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
-from ..cell_scene import looks_through
+from ..camera_view import camera_region, view_of
 from ..fields import object_property
 from ..model_changes import active_object, change_model, name_of
-from ..on_picture import OnPicture, window_region
+from ..on_picture import OnPicture
 from ..picture_frame import picture_frame
 from ..polls import NeedsPose
 from ..preferences import settings
@@ -120,11 +120,13 @@ class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
     def _pressed_on(self, context, event):
         """The handle under a press that starts it all."""
         space = context.space_data
-        if space is None or space.type != "VIEW_3D" or not looks_through(context.scene, space):
+        if space is None or space.type != "VIEW_3D":
             return None
-        region = window_region(context.area)
+        region = camera_region(context.scene, context.area, (event.mouse_x, event.mouse_y))
+        if region is None:
+            return None
         intrinsics = self._handles.cell.camera.intrinsics
-        frame = picture_frame(context.scene, region, space, intrinsics)
+        frame = picture_frame(context.scene, region, view_of(space, region), intrinsics)
         x, y = event.mouse_x - region.x + 0.5, event.mouse_y - region.y + 0.5
         pixel = frame.picture_pixel(x, y)
         return None if pixel is None else self._handles.nearest(pixel, reach_of(context, frame))

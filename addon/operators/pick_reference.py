@@ -6,6 +6,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
+from ..camera_view import hidden_names
 from ..model_changes import change_model, make_active
 from ..on_picture import OnPicture
 from ..polls import NeedsPose
@@ -33,6 +34,7 @@ class PickReference(OnPicture, NeedsPose, bpy.types.Operator):
         from ..modelled import standing_cell
 
         self._cell, self._shown, self._axis = standing_cell(context.scene), None, False
+        self._hidden = hidden_names(context.scene, context.space_data)
         return self.begin(context, event)
 
     def handle(self, context, area, event):
@@ -87,8 +89,6 @@ class PickReference(OnPicture, NeedsPose, bpy.types.Operator):
 
     def _under(self, context, area):
         """What is under the cursor, found once for each place of it."""
-        from ..feature_picking import shown_at
-
         pixel = self.pixel(context, area)
         if pixel is None:
             return None
@@ -97,5 +97,10 @@ class PickReference(OnPicture, NeedsPose, bpy.types.Operator):
             frame = self.frame(context, area)
             across = (frame.right - frame.left) / frame.intrinsics.width
             reach = REACH_POINTS * context.preferences.system.ui_scale / across
-            self._shown = key, shown_at(self._cell, pixel, reach, axis=self._axis)
+            self._shown = key, self._at(pixel, reach)
         return self._shown[1]
+
+    def _at(self, pixel, reach):
+        from ..feature_picking import shown_at
+
+        return shown_at(self._cell, pixel, reach, axis=self._axis, hidden=self._hidden)

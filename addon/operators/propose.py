@@ -9,13 +9,15 @@ from bpy.props import BoolProperty, StringProperty
 from ..background_job import WorksInBackground
 from ..document import bare_cell, read_scene, show_objects, stored_report, write_scene
 from ..polls import NeedsPose
+from ..preferences import settings
+from ..reviewing import Reviewed
 
 # about so many parts of a picture are tried
 PARTS = 20
 
 
-class Propose(WorksInBackground, NeedsPose, bpy.types.Operator):
-    """Look for boxes and cylinders on the active reference, and add those that are believed"""
+class Propose(Reviewed, WorksInBackground, NeedsPose, bpy.types.Operator):
+    """Look for boxes and cylinders on the active reference: shows them, to be taken or left"""
 
     bl_idname = "monocell.propose"
     bl_label = "Propose"
@@ -41,12 +43,18 @@ class Propose(WorksInBackground, NeedsPose, bpy.types.Operator):
         cell = read_scene(scene)
         return "Proposing", PARTS, lambda watch: proposed(cell, on, watch)
 
-    def finish(self, context, result):
-        """Add the proposals as objects like any other."""
-        scene = context.scene
-        cell = read_scene(scene)
-        taken = [one.thing for one in result if one.believed or self.doubtful]
-        grown = cell.with_objects([*cell.objects, *taken])
+    def offered(self, context, result):
+        """What may stand there; the doubtful wait for a click."""
+        from ..offer import offer_of_proposals
+
+        return offer_of_proposals(result, self.doubtful, settings(context).unit)
+
+    def take(self, context, result, offer):
+        """Add what is taken as objects like any other."""
+        from ..aligning import with_taken
+
+        scene, taken = context.scene, offer.taken
+        grown = with_taken(read_scene(scene), taken)
         write_scene(scene, grown, stored_report(scene))
         show_objects(scene, grown, [thing.name for thing in taken])
         self.report(

@@ -7,13 +7,14 @@ from typing import ClassVar
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
+from ..document import doubts_of
 from ..fields import endings_property
 from ..polls import NeedsCell
 from ..refusals import refuses
 
 
 class SaveCell(NeedsCell, bpy.types.Operator, ExportHelper):
-    """Save camera, sightings, references and objects as one cell document, the scene's own"""
+    """Save all of the cell, hidden objects too, as one cell document, the scene's own"""
 
     bl_idname = "monocell.save_cell"
     bl_label = "Save Cell Document"
@@ -36,4 +37,6 @@ class SaveCell(NeedsCell, bpy.types.Operator, ExportHelper):
         path = Path(bpy.path.abspath(self.filepath))
         cell = save_scene(context.scene, path)
         self.report({"INFO"}, f"{path}: {len(cell.objects)} objects saved")
+        for doubt in doubts_of(context.scene):
+            self.report({"WARNING"}, doubt)
         return {"FINISHED"}

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,12 +15,12 @@ from .depth_order import hull_of
 from .foot import foot_rivals
 from .freedom import Freedom
 from .hypotheses import hull_points, outlines
-from .prior import prior_root
+from .prior import prior_root, strayed_sigmas
 from .refine import EdgeFit, refine, rivalry
 from .search import Found, Surroundings, Worth, search
 from .sight import PictureSight
 from .stations import CREASES, Look
-from .verdict import Verdict, texture_of, verdict
+from .verdict import Verdict, texture_of, verdict, with_strayed
 from .window import looked_up
 
 # two searches, one led by edges and one by colours: where they differ, doubt begins
@@ -76,7 +76,11 @@ def align_one(
             ends.append((fit, found, look))
     if not ends:
         return _nothing("the picture has no edges where it should have its own")
-    return _best(ends, camera, sight)
+    tried = _best(ends, camera, sight)
+    if stated is None or tried.fit is None:
+        return tried
+    strayed = strayed_sigmas(start, tried.fit.solid, basis, stated)
+    return replace(tried, verdict=with_strayed(tried.verdict, strayed))
 
 
 def _best(

@@ -9,6 +9,7 @@ from ..arrays import Array
 from ..camera import Camera
 from ..modelling.solid import Solid
 from .hypotheses import hull_points
+from .refine import tangent
 
 # share of a size by which it may be wrong, and a turn in radians, 1 sigma
 SIZE_SHARE, TURN = 0.12, 0.25
@@ -44,3 +45,14 @@ def prior_root(
         information += np.linalg.inv(TRUSTED**2 * known + least)
     root: Array = np.linalg.inv(np.linalg.cholesky(information)).T
     return root
+
+
+def strayed_sigmas(start: Solid, end: Solid, basis: Array, stated: Array) -> float:
+    """How far a fit has gone from its start, in sigmas of what the source states, per direction.
+
+    `basis` (6 + P, F) holds the directions that are free, `stated` is as of `prior_root`.
+    """
+    back = np.linalg.pinv(basis)
+    away = back @ tangent(start, end)
+    known = back @ stated @ back.T
+    return float(np.sqrt(away @ np.linalg.lstsq(known, away, rcond=None)[0] / len(away)))

@@ -3,7 +3,8 @@
 
 Strong edges in a wrong place look like right ones. So each fit has to be found by every search
 alike, to have no rival that nearly as many edges vote for, to be determined by its edges in every
-direction, and to have its foot on an edge: most wrong fits follow a shadow there.
+direction, and to have its foot on an edge: most wrong fits follow a shadow there. What was picked
+before must agree with it within what the picks say of themselves.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ COMMON_PIXELS = 0.15
 RIVAL_SHARE, TEXTURE = 1.0, 0.1
 # the foot of what stands on something is held by so much of an edge at least, pixels
 FOOT_PIXELS = 12.0
+# picks and edges that show the same object agree within so many sigmas, as rms of all directions
+STRAYED_SIGMAS = 2.5
 # edges below the foot may have this share of its votes
 LOWER_SHARE = 0.7
 # of the visible outline so much has an edge
@@ -78,6 +81,14 @@ def verdict(
     ]
     reasons = tuple(reason for reason in told if reason is not None)
     return Verdict(not reasons, reasons)
+
+
+def with_strayed(judged: Verdict, sigmas: float) -> Verdict:
+    """A verdict that also knows how far from its picks the fit is, in sigmas of theirs."""
+    if sigmas <= STRAYED_SIGMAS:
+        return judged
+    told = f"its edges lie {sigmas:.1f} sigmas from where it was: its picks or its edges are wrong"
+    return Verdict(False, (*judged.reasons, told))
 
 
 def supported_share(fit: EdgeFit) -> float:

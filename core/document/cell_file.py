@@ -104,19 +104,28 @@ def document_from_cell(cell: Cell, folder: Path) -> dict[str, Any]:
     if cell.mount is not None:
         document["mount"] = mount_entry(cell.mount)
     if cell.picture is not None:
-        document["picture"] = _moved(cell.picture, cell.folder, folder)
+        document["picture"] = picture_from(cell.picture, cell.folder, folder)
     document["sightings"] = [
-        sighting_entry(sighting) | {"picture": _moved(sighting.picture, cell.folder, folder)}
+        sighting_entry(sighting) | {"picture": picture_from(sighting.picture, cell.folder, folder)}
         for sighting in cell.sightings
     ]
     document["references"] = [reference_entry(reference) for reference in cell.references]
     document["objects"] = [
-        with_pictures_moved(object_entry(thing), lambda name: _moved(name, cell.folder, folder))
+        with_pictures_moved(
+            object_entry(thing), lambda name: picture_from(name, cell.folder, folder)
+        )
         for thing in cell.things
     ]
     if cell.composites:
         document["composites"] = [composite_entry(composite) for composite in cell.composites]
     return document
+
+
+def picture_from(name: str, old_folder: Path, new_folder: Path) -> str:
+    """A relative picture name as seen from the new folder; an absolute one stays."""
+    if Path(name).is_absolute() or old_folder.resolve() == new_folder.resolve():
+        return name
+    return Path(os.path.relpath((old_folder / name).resolve(), new_folder.resolve())).as_posix()
 
 
 def _check(
@@ -150,10 +159,3 @@ def _camera(value: Any, folder: Path) -> Camera:
     from .camera_file import read_camera
 
     return read_camera(folder / text(value, "camera"))
-
-
-def _moved(name: str, old_folder: Path, new_folder: Path) -> str:
-    """A relative picture name as seen from the new folder; an absolute one stays."""
-    if Path(name).is_absolute() or old_folder.resolve() == new_folder.resolve():
-        return name
-    return Path(os.path.relpath((old_folder / name).resolve(), new_folder.resolve())).as_posix()

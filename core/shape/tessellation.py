@@ -89,18 +89,24 @@ def cylinder(radius: float, height: float, segments: int = SEGMENTS) -> Tessella
     )
 
 
-def cone(radius: float, top_radius: float, height: float, segments: int = SEGMENTS) -> Tessellation:
+def cone(
+    radius: float,
+    top_radius: float,
+    height: float,
+    segments: int = SEGMENTS,
+    tip_rings: int = TIP_RINGS,
+) -> Tessellation:
     """A cone or frustum along z: `radius` at the bottom, `top_radius`, or 0, at the top."""
     if top_radius > 0:
         shape = cylinder(1.0, height, segments)
         wide = np.where(shape.vertices[:, 2:] < 0, radius, top_radius)
         around = shape.vertices * np.concatenate([wide, wide, np.ones_like(wide)], axis=1)
         return Tessellation(around, shape.corners, shape.starts, shape.smooth)
-    shrunk = TIP_SHRINK ** np.arange(TIP_RINGS)
+    shrunk = TIP_SHRINK ** np.arange(tip_rings)
     rings = [_ring(radius * s, height * (0.5 - s), segments) for s in shrunk]
-    levels = [np.arange(segments) + i * segments for i in range(TIP_RINGS)]
+    levels = [np.arange(segments) + i * segments for i in range(tip_rings)]
     bands = [_band(a, b) for a, b in pairwise(levels)]
-    tip = np.full(segments, TIP_RINGS * segments)
+    tip = np.full(segments, tip_rings * segments)
     last = np.stack([levels[-1], np.roll(levels[-1], -1), tip], axis=1)
     vertices = np.concatenate([*rings, [[0, 0, height / 2]]])
     sides = [(band, True) for band in (*bands, last)]

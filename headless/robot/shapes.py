@@ -4,7 +4,7 @@
 Bullet rounds the corners of a box by its collision margin of 1 mm, which makes distances up to
 0.73 mm too large, the unsafe side (0.41 mm for a cylinder). With a margin of zero a box is exact to
 rounding and a cylinder to 0.02 mm, and neither is ever smaller than it should be on its faces. A
-ball is exact. Cones, tubes and prisms are the convex hulls of their pieces (`pieces.py`), to
+ball is exact. Cones, tubes and prisms are the hulls of their pieces (`core/shape/pieces.py`), to
 0.02 mm as well.
 """
 
@@ -20,9 +20,10 @@ import numpy as np
 from ...core.errors import InvalidValue
 from ...core.pose import Pose
 from ...core.primitives import Box, Cylinder, Primitive, Sphere
+from ...core.shape.pieces import pieces_of
 from .bullet import position_and_quaternion, pybullet
 from .environment import WorldMesh
-from .pieces import pieces_of, pieces_text
+from .pieces import pieces_text
 
 # at some 100 000 Bullet's shared memory is full; a query goes through all of them
 MOST_HULL_VERTICES = 30_000
@@ -66,7 +67,7 @@ def collision_shape(client: int, thing: Primitive, frame_from_object: Pose | Non
     else:
         with TemporaryDirectory(prefix="monocell-") as folder:
             file = Path(folder) / "pieces.obj"
-            file.write_text(pieces_text(pieces_of(thing)), encoding="ascii")
+            file.write_text(pieces_text(pieces_of(thing).corners()), encoding="ascii")
             shape = p.createCollisionShape(p.GEOM_MESH, fileName=str(file), **place)
     # Bullet sets margins through the base of a body alone; the shape keeps what it was given there
     p.removeBody(_body(client, shape, Pose.identity()), physicsClientId=client)

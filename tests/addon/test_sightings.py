@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import json
+from functools import partial
 
 import bench_cell
 import numpy as np
@@ -214,3 +215,19 @@ def test_undo_takes_a_sighting_back(addon, scene, sightings):
     addon.ops.ed.undo()
     assert len(sightings()) == 5
     assert json.loads(addon.context.scene.monocell_cell.text)["monocell"] == 1
+
+
+def test_a_point_has_no_window_and_no_radius(addon, scene, sightings):
+    addon.ops.monocell.add_point(pixel_at=(320, 240))
+    ours = addon.ops.monocell
+    for edit in (partial(ours.drag_window, window=(9, 9, 50, 50)), ours.clear_window):
+        with pytest.raises(RuntimeError, match=r"^Error: sighting 6 is a clicked point and has no"):
+            edit()
+    scene.monocell_cell.sightings[5].radius = 0.1
+    assert isinstance(sightings()[5], PointSighting)
+
+
+def test_a_radius_that_is_no_balls_is_held_at_the_largest(addon, scene, sightings, capfd):
+    scene.monocell_cell.sightings[0].radius = 1e6
+    assert sightings()[0].radius == 1e3
+    assert "Traceback" not in "".join(capfd.readouterr())

@@ -73,6 +73,18 @@ def test_an_object_that_is_not_in_the_picture_stays_as_it_was_and_says_so():
     assert aligned.things[0] is ghost
 
 
+@pytest.mark.parametrize(("sigma", "believed"), [(0.05, True), (0.002, False)])
+def test_edges_far_from_where_the_picks_put_an_object_are_not_believed(sigma, believed):
+    seen = picture([box()], camera(), [RED])
+    start = rough(box())
+    # radians of turn, and a fifth of it in metres
+    each = sigma * np.array([1, 1, 1, *[0.2] * (3 + len(start.sizes))])
+    known = replace(start, covariance=np.diag(each**2))
+    told = align([known], camera(), seen, [TABLE]).objects[known.name]
+    assert told.believed == believed
+    assert any("sigmas from where it was" in reason for reason in told.reasons) != believed
+
+
 def test_only_the_objects_named_are_aligned(aligned_pair):
     things, starts, _ = aligned_pair
     seen = picture(things, camera(), [RED, BLUE])

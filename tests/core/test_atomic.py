@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 
 import pytest
-from monocell.core.atomic import atomic_path
+from monocell.core.atomic import atomic_files, atomic_path
 from monocell.core.errors import DocumentError
 
 
@@ -89,3 +89,43 @@ def test_a_name_too_long_for_the_disk_is_refused(tmp_path):
         atomic_path(tmp_path / ("a" * 400)),
     ):
         pass
+
+
+def test_files_that_belong_together_appear_together_and_others_stay(tmp_path):
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes" / "of_others.obj").write_text("other")
+    (tmp_path / "meshes" / "a.obj").write_text("old")
+    with atomic_files(tmp_path / "cell.urdf") as temporary:
+        assert temporary.name == "cell.urdf"
+        temporary.write_text("new")
+        (temporary.parent / "meshes").mkdir()
+        (temporary.parent / "meshes" / "a.obj").write_text("new")
+        assert (tmp_path / "meshes" / "a.obj").read_text() == "old"
+    assert (tmp_path / "cell.urdf").read_text() == "new"
+    assert (tmp_path / "meshes" / "a.obj").read_text() == "new"
+    assert (tmp_path / "meshes" / "of_others.obj").read_text() == "other"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["cell.urdf", "meshes"]
+
+
+def test_when_one_of_the_files_can_t_take_its_place_none_does(tmp_path):
+    (tmp_path / "a.obj").write_text("old")
+    (tmp_path / "cell.urdf").write_text("old")
+    (tmp_path / "b.obj").mkdir()
+    with (
+        pytest.raises(DocumentError, match="can't be written"),
+        atomic_files(tmp_path / "cell.urdf") as temporary,
+    ):
+        for name in ("cell.urdf", "a.obj", "b.obj"):
+            (temporary.parent / name).write_text("new")
+        (temporary.parent / "more").mkdir()
+        (temporary.parent / "Aa").mkdir()
+        (temporary.parent / "Aa" / "c.obj").write_text("new")
+    assert (tmp_path / "a.obj").read_text() == (tmp_path / "cell.urdf").read_text() == "old"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.obj", "b.obj", "cell.urdf"]
+
+
+def test_a_failure_midway_leaves_no_folder_behind(tmp_path):
+    with pytest.raises(RuntimeError), atomic_files(tmp_path / "cell.urdf") as temporary:
+        temporary.write_text("half")
+        raise RuntimeError
+    assert list(tmp_path.iterdir()) == []

@@ -23,7 +23,7 @@ ROBOT = {"pybullet", "pybullet_data", "trimesh", "ompl"}
 # what each room may import beside the standard library, and which rooms it may reach
 ALLOWED = {
     "core": ({"numpy", "cv2"}, {"core"}),
-    "scene": ({"numpy", "cv2", "bpy", "mathutils"}, {"core", "scene"}),
+    "scene": ({"numpy", "cv2", "bpy", "bmesh", "mathutils"}, {"core", "scene"}),
     "addon": ({"numpy", "cv2"} | BLENDER, {"core", "scene", "addon"}),
     "headless": ({"numpy", "cv2"} | ROBOT, {"core", "scene", "headless"}),
 }

@@ -45,7 +45,7 @@ def worked(seconds=60.0):
 def steps():
     yield from show_sidebar()
     yield from shot("1_start")
-    in_view(bpy.ops.monocell.open_sample, "EXEC_DEFAULT", True)
+    in_view(bpy.ops.monocell.open_sample, "EXEC_DEFAULT", True, sample="TABLE")
     yield from shot("2_sample")
 
     # started, then cancelled with Esc: nothing may have changed

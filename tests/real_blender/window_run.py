@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 
-def in_window(blender, folder, steps, job):
+def in_window(blender, folder, steps, job, timeout=240):
     """Run a script of steps in the window; the folder, what it found, and the finished process.
 
     MONOCELL_SCREENSHOTS names a folder that the screenshots are kept in.
@@ -21,7 +21,7 @@ def in_window(blender, folder, steps, job):
         run = blender.run(
             *("--enable-event-simulate", "--window-geometry", 0, 0, 1600, 1000),
             *("--python", script, "--", folder / "job.json"),
-            timeout=240,
+            timeout=timeout,
         )
     except subprocess.TimeoutExpired as late:
         pytest.fail(f"the window never finished: {late.stdout}")

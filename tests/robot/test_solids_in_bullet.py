@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from monocell.core import Cone, Cylinder, Pose, Prism, Sphere, Tube
 from monocell.core.errors import InvalidValue
 from monocell.core.primitives import polygon_centre
-from monocell.headless.robot.pieces import pieces_of
+from monocell.core.shape.pieces import pieces_of
 
 TURNED = Pose.from_rotation_vector([0.4, -0.3, 1.1], [0.2, -0.1, 0.3])
 CORNERS = np.array([[0, 0], [0.2, 0], [0.2, 0.05], [0.05, 0.05], [0.05, 0.15], [0, 0.15]])
@@ -109,7 +109,7 @@ def test_a_ball_fits_into_a_tube_and_into_the_notch_of_a_prism(probe):
 @pytest.mark.parametrize("name", ["tube", "ell"])
 def test_every_point_of_a_solid_is_in_one_of_its_pieces(name):
     thing = SOLIDS[name]
-    outlines = [piece[: len(piece) // 2, :2] for piece in pieces_of(thing)]
+    outlines = [piece[: len(piece) // 2, :2] for piece in pieces_of(thing).corners()]
     random = np.random.default_rng(3)
     points = random.uniform(-1, 1, (3000, 3)) * thing.half_extent
     inside = np.array([true_distance(thing, point) <= 0 for point in points])
