@@ -22,7 +22,8 @@ def format_of(ending):
 
 
 def _show_files_of(operator, context):
-    operator.filter_glob = "*" + operator.filename_ext
+    # Blender 5.2 gives the properties here, which have no filename_ext
+    operator.filter_glob = f"*.{operator.format.lower()}"
 
 
 class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):
