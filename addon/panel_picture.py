@@ -74,9 +74,16 @@ def _draw_opened(layout, context):
         row.operator(OpenCell.bl_idname, text="", icon="FILE_FOLDER")
     if picture_step(scene).mark == "doubt" and stored.shown_picture:
         layout.operator(FindPictures.bl_idname, icon="VIEWZOOM")
-    seen = stored.camera is not None and stored.camera.visible_get(viewport=context.space_data)
-    if not seen or camera_region(scene, context.area) is None:
+    if not _looks_through(context):
         layout.operator(LookThrough.bl_idname, icon="VIEW_CAMERA")
+
+
+def _looks_through(context):
+    """Whether this viewport shows the picture already."""
+    camera, area = context.scene.monocell_cell.camera, context.area
+    if camera is None or area is None or not camera.visible_get(viewport=context.space_data):
+        return False
+    return camera_region(context.scene, area) is not None
 
 
 class LensPanel(CellPanel, bpy.types.Panel):
