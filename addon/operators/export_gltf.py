@@ -22,8 +22,8 @@ def format_of(ending):
 
 
 def _show_files_of(operator, context):
-    # Blender 5.2 gives the properties here, which have no filename_ext
-    operator.filter_glob = f"*.{operator.format.lower()}"
+    # set by a script or a button it is the properties alone, without what the operator can tell
+    operator.filter_glob = "*." + operator.format.lower()
 
 
 class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):

@@ -87,12 +87,3 @@ def test_a_search_before_any_calibration_tells_of_none(addon, module, raw_bench)
     addon.ops.monocell.open_cell(filepath=str(raw_bench))
     addon.ops.monocell.find_all()
     assert module("addon.document").stored_report(addon.context.scene).verdict == ""
-
-
-def test_the_file_browser_shows_files_of_the_format_in_every_blender(module):
-    from types import SimpleNamespace
-
-    # what Blender 5.2 gives: the properties alone
-    asked = SimpleNamespace(format="STL", filter_glob="*.glb")
-    module("addon.operators.export_gltf")._show_files_of(asked, None)
-    assert asked.filter_glob == "*.stl"
