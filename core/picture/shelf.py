@@ -49,4 +49,4 @@ class PictureShelf:
         """Raises PictureError for the first that is missing, before the first is searched."""
         for name in names:
             if not self._cell.path_of(name).is_file():
-                read_picture(self._cell.path_of(name))
+                read_picture_told(self._cell.path_of(name))
