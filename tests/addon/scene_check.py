@@ -64,8 +64,8 @@ def _check_objects(bpy, module, cell):
         return
     graph = bpy.context.evaluated_depsgraph_get()
     for ob, thing in zip(modelled, cell.objects, strict=True):
-        # a hidden object's matrix is not kept by Blender
-        if not ob.data.vertices or ob.name not in bpy.context.view_layer.objects:
+        # where a hidden object stands Blender may not know before it is shown
+        if not ob.data.vertices or not ob.visible_get():
             continue
         place = ob.evaluated_get(graph).matrix_world
         seen = np.array([place @ vertex.co for vertex in ob.data.vertices])
