@@ -21,7 +21,8 @@ def format_of(ending):
 
 
 def _show_files_of(operator, context):
-    operator.filter_glob = "*" + operator.filename_ext
+    # set by a script or a button it is the properties alone, without what the operator can tell
+    operator.filter_glob = "*." + operator.format.lower()
 
 
 class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):

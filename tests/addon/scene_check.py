@@ -95,10 +95,10 @@ def _check_overlay(bpy, module):
         plane = document.active_plane(scene)
         grid = None if plane is None else module("addon.plane_grid").plane_grid(cell.camera, plane)
         strokes += [] if grid is None else list(lines.grid_strokes(grid, look))
-        overlay = module("addon.overlay")
+        wires = module("addon.object_lines")
         for ob in scene.objects:
             if module("scene.objects").is_modelled(ob):
-                overlay._object_key(ob, True)
-                overlay._lines_of(scene, ob, True, look)
+                wires._object_key(ob, True)
+                wires._lines_of(scene, ob, True, look)
     for stroke in strokes:
         assert all(np.isfinite(line).all() for line in stroke.lines), stroke
