@@ -284,6 +284,14 @@ def open_document():
     yield 2 * PAUSE
 
 
+def blender_is_busy():
+    """Whether a modal operator of Blender's own runs: a user then can't change the screen."""
+    running = bpy.context.window_manager.windows[0].modal_operators
+    return any(not operator.bl_idname.startswith("MONOCELL_") for operator in running)
+
+
+# what no click or key of a user does while Blender itself is modal, and Blender does not survive
+BY_SCRIPT = (another_editor, workspace, scene, maximise, leave_view, save_and_open, open_document)
 MOVES = {
     click: 26,
     move: 8,
@@ -382,6 +390,10 @@ def steps():
                 yield 3 * PAUSE
             continue
         chosen = rng.choices(list(MOVES), list(MOVES.values()))[0]
+        if chosen in BY_SCRIPT and blender_is_busy():
+            press("ESC", 800, 500)
+            yield 2 * PAUSE
+            continue
         note(f"{i} {chosen.__name__}")
         try:
             yield from chosen()
