@@ -122,10 +122,6 @@ class SceneCell(bpy.types.PropertyGroup):
     outdated: StringProperty(
         name="Outdated", description="Why objects have to be solved again; empty: they need not"
     )
-    folder_beside: StringProperty(
-        name="Folder beside", description="The same as seen from the .blend when it was saved"
-    )
-    shown_told: StringProperty(name="Told", description="What is to say of the shown picture")
     shown_picture: StringProperty(name="Shown", description="Picture behind the camera view")
     shown_told: StringProperty(name="Told", description="What is to say of that picture")
     camera: PointerProperty(
