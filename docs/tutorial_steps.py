@@ -119,7 +119,7 @@ def all_aligned():
     yield from framed(job["carton_top"], CLOSER)
     in_view(bpy.ops.monocell.align, "INVOKE_DEFAULT", everything=True)
     yield from reviewed()
-    move(job["carton_top"])
+    move(job["carton"]["top"])
     yield from shot("review")
     yield from typed(("RET",), job["carton_top"])
     yield from worked()

@@ -104,7 +104,7 @@ def all_aligned():
     """All three onto the picture's edges: what would move is shown, then taken by Enter."""
     in_view(bpy.ops.monocell.align, "INVOKE_DEFAULT", everything=True)
     yield from reviewed()
-    move(job["carton_top"])
+    move(job["carton"]["top"])
     yield from shot("7_review")
     yield from typed(("RET",), job["carton_top"])
     yield from worked()
