@@ -109,6 +109,11 @@ def write_scene(scene: Any, cell: Cell, report: Report | None = None) -> None:
     if not any(isinstance(reference, ReferencePlane) for reference in cell.references):
         cell = replace(cell, references=(*cell.references, FLOOR))
     leave_modes(scene)
+    store_cell(scene, cell, report)
+
+
+def store_cell(scene: Any, cell: Cell, report: Report | None) -> None:
+    """The same for what changes no object: an edit of a mesh may go on."""
     folder = cell.folder.resolve()
     stored = scene.monocell_cell
     stored.folder = str(folder)

@@ -29,6 +29,8 @@ GREY: Color = (0.62, 0.62, 0.62, 1.0)
 WHITE: Color = (1.0, 1.0, 1.0, 1.0)
 TEXT_SIZE = 13.0
 LABEL_SIZE = 11.0
+# what a line that is called straight may bend, in pixels
+STRAIGHT_PIXELS = 0.02
 
 
 class LineBatch:
@@ -68,19 +70,43 @@ class LineBatch:
 
 
 def ends_of(lines: Iterable[Array]) -> Floats:
-    """Both ends (2 M, 3) of every straight part of polylines (N, 2), as a graphics card wants."""
+    """Both ends (2 M, 3) of every straight part of polylines (N, 2), as a graphics card wants.
+
+    Of a line that is straight all along only the ends are kept.
+    """
     kept = [line for line in lines if len(line) > 1]
     if not kept:
         return np.zeros((0, 3), np.float32)
     lengths = np.array([len(line) for line in kept])
     joined = np.concatenate(kept)
-    # every point begins a part but the last of its line
+    lasts = np.cumsum(lengths) - 1
+    firsts = lasts - lengths + 1
     begins = np.ones(len(joined), dtype=bool)
-    begins[np.cumsum(lengths) - 1] = False
+    begins[lasts] = False
+    # every point begins a part but the last of its line, and those inside a straight one
+    straight = _straight(joined, firsts, lasts)
+    begins &= ~np.repeat(straight, lengths)
+    begins[firsts] = True
     first = np.flatnonzero(begins)
+    after = first + 1
+    after[np.searchsorted(first, firsts[straight])] = lasts[straight]
     ends = np.zeros((2 * len(first), 3), np.float32)
-    ends[0::2, :2], ends[1::2, :2] = joined[first], joined[first + 1]
+    ends[0::2, :2], ends[1::2, :2] = joined[first], joined[after]
     return ends
+
+
+def _straight(points: Array, firsts: NDArray[Any], lasts: NDArray[Any]) -> NDArray[np.bool_]:
+    """Which of the joined lines leave the chord between their ends by no visible amount.
+
+    A point at a distance h off the chord c makes the way at least sqrt(c^2 + 4 h^2) long.
+    """
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    # the step from a line's last point to the next line's first is none of either
+    steps[lasts[:-1]] = 0.0
+    way = np.add.reduceat(steps, firsts)
+    chord = np.linalg.norm(points[lasts] - points[firsts], axis=1)
+    straight: NDArray[np.bool_] = way**2 - chord**2 <= 4 * STRAIGHT_PIXELS**2
+    return straight
 
 
 def draw_lines(lines: Sequence[Array], color: Color, width: float, scale: float) -> None:
@@ -124,7 +150,7 @@ def draw_words(
     width = max(blf.dimensions(0, text)[0] for text, _ in rows) + 2 * pad
     height = line * len(rows) + pad
     left, bottom, right, top = words_box((width, height), cursor, free, scale, loupe)
-    _plate(left, bottom, right, top)
+    _plates([(left, bottom, right, top)])
     for i, (text, color) in enumerate(rows):
         blf.position(0, left + pad, top - line * (i + 1) + 0.22 * line, 0)
         blf.color(0, *color)
@@ -137,21 +163,37 @@ def draw_labels(labels: Iterable[tuple[Array, str, Color]], scale: float) -> Non
 
     blf.size(0, LABEL_SIZE * scale)
     pad, line = 3.0 * scale, 1.3 * LABEL_SIZE * scale
-    for (x, y), text, color in labels:
-        left, bottom = float(x) + 4 * scale, float(y)
-        _plate(left, bottom, left + blf.dimensions(0, text)[0] + 2 * pad, bottom + line)
-        blf.position(0, left + pad, bottom + 0.28 * line, 0)
+    placed = [(float(x) + 4 * scale, float(y), text, color) for (x, y), text, color in labels]
+    _plates(
+        [(x, y, x + blf.dimensions(0, text)[0] + 2 * pad, y + line) for x, y, text, _ in placed]
+    )
+    for x, y, text, color in placed:
+        blf.position(0, x + pad, y + 0.28 * line, 0)
         blf.color(0, *color)
         blf.draw(0, text)
 
 
-def _plate(left: float, bottom: float, right: float, top: float) -> None:
+def _plates(sides: Sequence[tuple[float, float, float, float]]) -> None:
+    """Dark rectangles: left, bottom, right and top of each."""
     import gpu
     from gpu_extras.batch import batch_for_shader
 
+    if not sides:
+        return
     shader: Any = gpu.shader.from_builtin("UNIFORM_COLOR")
-    corners = [(left, bottom, 0), (right, bottom, 0), (left, top, 0), (right, top, 0)]
-    batch = batch_for_shader(shader, "TRI_STRIP", {"pos": corners})
+    corners = [
+        (x, y, 0.0)
+        for left, bottom, right, top in sides
+        for x, y in (
+            (left, bottom),
+            (right, bottom),
+            (left, top),
+            (right, bottom),
+            (left, top),
+            (right, top),
+        )
+    ]
+    batch = batch_for_shader(shader, "TRIS", {"pos": corners})
     gpu.state.blend_set("ALPHA")
     shader.bind()
     shader.uniform_float("color", (0.06, 0.06, 0.07, 0.82))

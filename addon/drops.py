@@ -7,7 +7,16 @@ from .operators.drop_picture import DropPicture
 from .operators.open_cell import OpenCell
 
 
-class CellDrop(bpy.types.FileHandler):
+class OnViewport:
+    """A mixin for what is dropped on a 3D viewport and nowhere else."""
+
+    @classmethod
+    def poll_drop(cls, context):
+        """Blender's question whether it is taken here."""
+        return context.area is not None and context.area.type == "VIEW_3D"
+
+
+class CellDrop(OnViewport, bpy.types.FileHandler):
     """A cell document opens in a scene of its own."""
 
     bl_idname = "MONOCELL_FH_cell"
@@ -15,24 +24,14 @@ class CellDrop(bpy.types.FileHandler):
     bl_import_operator = OpenCell.bl_idname
     bl_file_extensions = ".json"
 
-    @classmethod
-    def poll_drop(cls, context):
-        """Only on a 3D viewport."""
-        return context.area is not None and context.area.type == "VIEW_3D"
 
-
-class PictureDrop(bpy.types.FileHandler):
-    """A picture starts a cell, once it is said which camera took it."""
+class PictureDrop(OnViewport, bpy.types.FileHandler):
+    """The first picture starts a cell once it is said which camera took it; more are sightings."""
 
     bl_idname = "MONOCELL_FH_picture"
     bl_label = "monocell picture"
     bl_import_operator = DropPicture.bl_idname
     bl_file_extensions = ".png;.jpg;.jpeg;.tif;.tiff;.bmp"
-
-    @classmethod
-    def poll_drop(cls, context):
-        """Only on a 3D viewport."""
-        return context.area is not None and context.area.type == "VIEW_3D"
 
 
 CLASSES = (CellDrop, PictureDrop)

@@ -9,7 +9,11 @@ import bpy
 
 from .document import active_plane, bare_cell, has_cell, stored_report
 from .preferences import settings
+from .scene_changes import SceneChanges
 from .settings import Settings
+
+# of so many the lines of their objects are kept
+MOST_VIEWPORTS = 8
 
 
 class Overlay:
@@ -19,12 +23,11 @@ class Overlay:
     changes; a redraw only places them.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, changes: SceneChanges) -> None:
+        self._changes = changes
         self._balls: tuple[Any, list[Any], list[Any]] = ((), [], [])
         self._grid: tuple[Any, list[Any]] = ((), [])
-        self._common: tuple[Any, ...] = ()
-        self._lines: dict[str, tuple[Any, _Held]] = {}
-        self._objects: list[Any] | None = None
+        self._objects: dict[tuple[str, int], Any] = {}
 
     def draw(self) -> None:
         """Blender's call, once a redraw of any 3D viewport."""
@@ -96,76 +99,38 @@ class Overlay:
         return self._balls[1]
 
     def _object_batches(self, context: Any, scene: Any, look: Settings) -> list[Any]:
-        from ..scene.objects import is_modelled
+        from .object_lines import ObjectLines
 
         if bare_cell(scene).camera.camera_from_world is None:
             return []
-        active = context.view_layer.objects.active
-        common = (scene.monocell_cell.text, look)
-        # what was drawn for another camera or in other colours is of no use
-        before = self._lines if self._common == common else {}
-        self._lines, self._common = {}, common
-        for ob in scene.objects:
-            if not is_modelled(ob) or not ob.visible_get(viewport=context.space_data):
-                continue
-            key = _object_key(ob, ob == active and ob.select_get())
-            held = before.get(ob.name)
-            if held is None or held[0] != key:
-                held = key, _lines_of(scene, ob, key[0], look)
-            self._lines[ob.name] = held
-        # of a hundred objects one was moved: the lines of the others are kept, and sent as one
-        if before != self._lines or self._objects is None:
-            self._objects = _joined(lines for _, lines in self._lines.values())
-        return self._objects
+        viewport = (scene.name, context.space_data.as_pointer())
+        if viewport not in self._objects and len(self._objects) >= MOST_VIEWPORTS:
+            # viewports and scenes that were closed
+            self._objects.clear()
+        lines = self._objects.setdefault(viewport, ObjectLines())
+        return lines.batches(context, look, self._changes.count)
 
 
 def register() -> None:
-    """Start drawing. Blender's handle is kept where `unregister` takes it from again."""
-    handle = bpy.types.SpaceView3D.draw_handler_add(Overlay().draw, (), "WINDOW", "POST_PIXEL")
-    bpy.types.SpaceView3D.monocell_overlay = handle
+    """Start drawing. What has to be ended is kept where `unregister` takes it from again."""
+    changes = SceneChanges()
+    changes.listen()
+    draw = Overlay(changes).draw
+    handle = bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL")
+    bpy.types.SpaceView3D.monocell_overlay = (handle, changes)
 
 
 def unregister() -> None:
     """Stop drawing."""
-    handle = bpy.types.SpaceView3D.monocell_overlay
+    handle, changes = bpy.types.SpaceView3D.monocell_overlay
     bpy.types.SpaceView3D.draw_handler_remove(handle, "WINDOW")
+    changes.end()
     del bpy.types.SpaceView3D.monocell_overlay
-
-
-def _object_key(ob: Any, active: bool) -> tuple[Any, ...]:
-    """What an object's lines depend on; in edit mode its dimensions follow the edit."""
-    return (active, ob.matrix_world.copy(), tuple(ob.dimensions))
-
-
-class _Held:
-    """An object's lines; two are equal when they are the same ones."""
-
-    def __init__(self, looks: Any) -> None:
-        self.looks = looks
-
-
-def _lines_of(scene: Any, ob: Any, active: bool, look: Settings) -> _Held:
-    from ..core.errors import MonocellError
-    from ..scene.objects import read_object
-    from .overlay_lines import looks_of, object_strokes
-
-    try:
-        thing = read_object(ob)
-    except MonocellError:
-        # an object edited out of its kind has no wire-frame; the panel says so
-        return _Held({})
-    return _Held(looks_of(object_strokes(thing, bare_cell(scene).camera, active, look)))
-
-
-def _joined(held: Any) -> list[Any]:
-    from .drawing import LineBatch
-    from .overlay_lines import joined
-
-    looks = joined(one.looks for one in held)
-    return [LineBatch.of_ends(ends, color, width) for (color, width), ends in looks.items()]
 
 
 def _batches(strokes: Any) -> list[Any]:
     from .drawing import LineBatch
+    from .overlay_lines import joined, looks_of
 
-    return [LineBatch(stroke.lines, stroke.color, stroke.width) for stroke in strokes]
+    looks = joined([looks_of(strokes)])
+    return [LineBatch.of_ends(ends, color, width) for (color, width), ends in looks.items()]

@@ -6,6 +6,7 @@ All in pixels of the undistorted view, which changes neither with zoom nor with 
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -18,7 +19,7 @@ from ..core.arrays import Array
 from ..core.ball.sphere import outline_pixels
 from ..core.camera import Camera
 from ..core.cell import Cell
-from ..core.picture.wireframe import finite_parts, wireframe
+from ..core.picture.wireframe import BEND_PIXELS, finite_parts, wireframe
 from ..core.primitives import Primitive
 from ..core.sighting import PointSighting, SphereSighting
 from .drawing import GREY, HALO, WHITE, YELLOW, Color, Floats, ends_of
@@ -32,7 +33,6 @@ from .settings import DEFAULTS, Settings
 FINE_PIXELS, POOR_PIXELS = 0.1, 0.6
 # orange at least
 DOUBTFUL_SHARE = 2 / 3
-OUTLINE_POINTS = 120
 LONGEST_REASON = 40
 CROSS_PIXELS = 7.0
 # a pick's ring, pixels about it
@@ -200,7 +200,10 @@ def _sighting_lines(cell: Cell, report: Report | None, i: int) -> tuple[Array, .
 
 def _outline(cell: Cell, ball: tuple[float, float, float, float]) -> tuple[Array, ...]:
     pinhole = cell.camera.intrinsics.undistorted()
-    pixels = outline_pixels(pinhole, ball[:3], ball[3], OUTLINE_POINTS)
+    radius = pinhole.fx * ball[3] / ball[2]
+    # a chord of n leaves its circle by r (1 - cos(pi / n)), about r pi^2 / 2 n^2
+    count = math.ceil(math.pi * math.sqrt(max(radius, 1.0) / (2 * BEND_PIXELS)))
+    pixels = outline_pixels(pinhole, ball[:3], ball[3], count)
     return tuple(finite_parts(np.concatenate([pixels, pixels[:1]])))
 
 

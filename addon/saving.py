@@ -8,7 +8,7 @@ from typing import Any
 
 from ..core.cell import Cell
 from ..core.document.cell_file import cell_from_document, document_from_cell, write_cell
-from .document import read_scene, show_objects, stored_report, write_scene
+from .document import read_scene, show_objects, store_cell, stored_report
 
 
 def save_scene(scene: Any, path: Path) -> Cell:
@@ -24,7 +24,7 @@ def save_scene(scene: Any, path: Path) -> Cell:
         return cell
     moved = cell_from_document(document_from_cell(cell, path.parent), path.parent)
     shown = _renamed(cell, moved).get(stored.shown_picture, stored.shown_picture)
-    write_scene(scene, moved, stored_report(scene))
+    store_cell(scene, moved, stored_report(scene))
     stored.shown_picture = shown
     # an object names its textures itself
     dressed = [t.name for t in moved.objects if t.appearance is not None and t.appearance.textures]

@@ -99,7 +99,9 @@ class Timed:
     """The overlay, drawn a second time with the clock running."""
 
     def __init__(self):
-        self.overlay, self.name = part("addon.overlay").Overlay(), ""
+        changes = part("addon.scene_changes").SceneChanges()
+        changes.listen()
+        self.overlay, self.name = part("addon.overlay").Overlay(changes), ""
 
     def draw(self):
         if not self.name:

@@ -19,7 +19,12 @@ class DropPicture(bpy.types.Operator):
     bl_label = "Start a Cell from the Picture"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    filepath: StringProperty(name="Picture", subtype="FILE_PATH", options={"SKIP_SAVE", "HIDDEN"})
+    filepath: StringProperty(
+        name="Picture",
+        description="The picture that was dropped",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
 
     def invoke(self, context, event):
         """Ask which camera took it."""

@@ -7,7 +7,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 
 from ..cell import Cell
-from .pictures import Picture, read_picture
+from .pictures import Picture, read_picture, read_picture_told
 
 # a picture of 24 megapixels takes 72 MB
 KEPT = 2
@@ -22,6 +22,7 @@ class PictureShelf:
     def __init__(self, cell: Cell, watch: Callable[[str], None] | None = None) -> None:
         self._cell, self._watch = cell, watch
         self._kept: OrderedDict[str, Picture] = OrderedDict()
+        self._told: dict[str, tuple[str, ...]] = {}
 
     def read(self, name: str) -> Picture:
         """The pixels of a picture of the cell, (H, W, 3)."""
@@ -30,9 +31,17 @@ class PictureShelf:
         if name not in self._kept:
             while len(self._kept) >= KEPT:
                 self._kept.popitem(last=False)
-            self._kept[name] = read_picture(self._cell.path_of(name), self._cell.camera.intrinsics)
+            path, lens = self._cell.path_of(name), self._cell.camera.intrinsics
+            self._kept[name], self._told[name] = read_picture_told(path, lens)
         self._kept.move_to_end(name)
         return self._kept[name]
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """Words on rotation tags: those of the first picture that has one, and how many have."""
+        tagged = [words for words in self._told.values() if words]
+        more = f" ({len(tagged)} pictures have one)"
+        return tuple(word + more * (len(tagged) > 1) for word in (tagged[0] if tagged else ()))
 
     def check_there(self, names: list[str]) -> None:
         """Raises PictureError for the first that is missing, before the first is searched."""

@@ -161,3 +161,15 @@ def test_objects_are_joined_by_their_looks_with_halos_below():
     assert len(together) == 3
     assert next(iter(together))[0] == HALO
     assert sum(map(len, together.values())) == sum(len(e) for one in many for e in one.values())
+
+
+def test_a_line_that_is_straight_all_along_keeps_its_ends_alone():
+    along = np.linspace([0.0, 0], [40, 30], 9)
+    bent = np.array([[0.0, 0], [20, 0.5], [40, 0]])
+    there_and_back = np.array([[0.0, 0], [50, 0], [40, 0]])
+    closed = np.array([[0.0, 0], [5, 0], [5, 5], [0.0, 0]])
+    lines = [along, bent, there_and_back, closed, along[::-1]]
+    starts = ends_of(lines)[0::2, :2].tolist()
+    assert starts == [[0, 0], [0, 0], [20, 0.5], [0, 0], [50, 0], [0, 0], [5, 0], [5, 5], [40, 30]]
+    assert ends_of(lines)[1::2, :2].tolist()[0] == [40, 30]
+    assert ends_of(lines)[1::2, :2].tolist()[-1] == [0, 0]

@@ -14,14 +14,12 @@ import shlex
 import shutil
 import subprocess
 import sys
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from bundled_wheels import ROOT, fetch_wheels
 
-ROOT = Path(__file__).resolve().parents[2]
-WHEELS = ROOT / "wheels"
 # the bench of the add-on's tests is built here as well
 sys.path.insert(0, str(ROOT / "tests" / "addon"))
 
@@ -80,7 +78,9 @@ def pytest_generate_tests(metafunc):
 @pytest.fixture(scope="session")
 def extension_zip(tmp_path_factory):
     """The extension as users get it, built by Blender itself."""
-    fetch_wheels()
+    trouble = fetch_wheels()
+    if trouble:
+        pytest.skip(trouble)
     path = tmp_path_factory.mktemp("built") / "monocell.zip"
     builder = Blender(blender_commands()[0], tmp_path_factory.mktemp("builder"))
     built = builder.run(
@@ -109,24 +109,3 @@ def installed(command, extension_zip, resources):
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return blender
-
-
-def fetch_wheels():
-    """Download the wheels of the manifest that are not there yet; skip where that can't be."""
-    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text())
-    missing = [Path(wheel).name for wheel in manifest["wheels"] if not (ROOT / wheel).is_file()]
-    if not missing:
-        return
-    named = ["==".join(wheel.split("-")[:2]) for wheel in missing]
-    options = (
-        "--quiet --no-deps --only-binary=:all: --python-version 3.13 --abi abi3 --abi none "
-        "--platform manylinux2014_x86_64 --platform any"
-    )
-    fetched = subprocess.run(
-        [sys.executable, "-m", "pip", "download", *options.split(), "--dest", WHEELS, *named],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    if fetched.returncode != 0 or not all((WHEELS / wheel).is_file() for wheel in missing):
-        pytest.skip(f"the wheels can't be fetched: {fetched.stderr.strip()[-300:]}")
