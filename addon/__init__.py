@@ -38,6 +38,7 @@ def _classes():
     from . import (
         drops,
         lists,
+        menus,
         operators,
         panel_camera,
         panel_model,
@@ -55,9 +56,13 @@ def _classes():
         panel_picture.PicturePanel,
         panel_picture.LensPanel,
         panel_camera.CameraPanel,
+        panel_camera.AccuracyPanel,
         panel_camera.SightingsPanel,
         panel_model.ReferenceMenu,
         panel_model.ModelPanel,
         panel_object.ObjectPanel,
+        panel_model.ReferencesPanel,
+        panel_model.AllObjectsPanel,
+        menus.ExportMenu,
         panel_use.UsePanel,
     )

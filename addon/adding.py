@@ -3,6 +3,7 @@
 
 from bpy.props import EnumProperty, StringProperty
 
+from .fields import new_name_property
 from .modelled import add_modelled
 from .pick_plans import WAYS
 from .picking import PicksOnPicture
@@ -10,15 +11,14 @@ from .polls import NeedsPose
 from .refusals import refuses
 
 
-def way_property(kind, usual=None):
-    """The choice of how a kind is picked and held, the first way or the `usual` one offered."""
+def way_property(kind):
+    """The choice of how a kind is picked and held, the first way offered."""
     ways = [(name, label, meaning) for name, label, meaning, _ in WAYS[kind]]
-    default = usual or ways[0][0]
     return EnumProperty(
         name="Way",
         description="How it is picked and held",
         items=ways,
-        default=default,
+        default=ways[0][0],
         options={"SKIP_SAVE"},
     )
 
@@ -26,9 +26,7 @@ def way_property(kind, usual=None):
 class AddsPicked(PicksOnPicture, NeedsPose):
     """An operator of a `kind` with a property `way`; scripts give `picks` as JSON."""
 
-    name: StringProperty(
-        name="Name", description="Empty: the first free one", options={"SKIP_SAVE"}
-    )
+    name: new_name_property("object")
     on: StringProperty(
         name="On",
         description="The reference it stands on, or a face of an object as crate.top; empty: the "

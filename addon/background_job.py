@@ -13,7 +13,7 @@ from typing import Any
 
 import bpy
 
-from ..core.errors import MonocellError
+from ..core.errors import InvalidValue, MonocellError
 
 # how often Blender looks after the work, seconds
 TICK = 0.08
@@ -103,11 +103,11 @@ class WorksInBackground:
             return {"CANCELLED"}
         try:
             title, total, work = self.prepare(context)
+            self._begun_with = self.state_of(context.scene)
         except MonocellError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         state.title, state.share, state.name, state.cancel = title, 0.0, "", False
-        self._scene, self._text = context.scene.session_uid, context.scene.monocell_cell.text
         self._job = Job(work, total)
         self._timer = context.window_manager.event_timer_add(TICK, window=context.window)
         context.window_manager.modal_handler_add(self)
@@ -136,6 +136,10 @@ class WorksInBackground:
         self._job.watch.stop()
         self._end(context)
 
+    def state_of(self, scene):
+        """What the work began with, and what has to be the same when it ends."""
+        return scene.session_uid, scene.monocell_cell.text
+
     def arrived(self, context, event, result):
         """What follows when the work is done in a window."""
         return self.finish(context, result)
@@ -146,22 +150,14 @@ class WorksInBackground:
             if context.window_manager.monocell_work.cancel:
                 # it had come to its end just before it could be told
                 raise Stopped
+            if self.state_of(context.scene) != self._begun_with:
+                raise InvalidValue("The cell was changed meanwhile: start again for it as it is")
+            return self.arrived(context, event, result)
         except Stopped:
             self.report({"INFO"}, "Cancelled: nothing was changed")
-            return {"CANCELLED"}
         except MonocellError as error:
             self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        scene = context.scene
-        if scene.session_uid != self._scene or scene.monocell_cell.text != self._text:
-            self.report({"ERROR"}, "The cell was changed meanwhile: start again for it as it is")
-            return {"CANCELLED"}
-        try:
-            return self.arrived(context, event, result)
-        except MonocellError as error:
-            # an object that was edited out of its kind meanwhile
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        return {"CANCELLED"}
 
     def _end(self, context):
         context.window_manager.event_timer_remove(self._timer)

@@ -61,7 +61,7 @@ def found(cell: Cell, watch: Watch | None = None) -> Report:
         else SeenSighting("rejected", failures[i], None, None)
         for i, (sighting, outline) in enumerate(zip(used.sightings, outlines, strict=True))
     ]
-    return Report("", (), None, None, _every(cell, rows))
+    return Report("", shelf.told, None, None, _every(cell, rows))
 
 
 def _every(cell: Cell, rows: list[SeenSighting]) -> tuple[SeenSighting, ...]:

@@ -76,7 +76,6 @@ def _focal(inputs: Any, width: int) -> tuple[float, float]:
 
 
 def _size(picture: Path) -> tuple[int, int]:
-    from ..core.picture.pictures import read_picture
+    from ..core.picture.pictures import upright_size
 
-    height, width = read_picture(picture).shape[:2]
-    return width, height
+    return upright_size(picture)

@@ -36,16 +36,17 @@ def open_scene(context: Any, cell: Cell, title: str) -> Any:
     A refusal (PictureError, InvalidValue) changes nothing.
     Returns the scene.
     """
-    from ..core.picture.pictures import read_picture
+    from ..core.picture.pictures import read_picture_told
 
-    name = shown_first(cell)
+    name, picture, told = shown_first(cell), None, ()
     with waiting(context), _new_scene(title) as scene:
-        picture = None if name is None else read_picture(cell.path_of(name), cell.camera.intrinsics)
+        if name is not None:
+            picture, told = read_picture_told(cell.path_of(name), cell.camera.intrinsics)
         write_scene(scene, cell)
         _measure_in(scene, settings(context).unit)
         put_camera(scene)
         if picture is not None:
-            show_picture(scene, name, picture)
+            show_picture(scene, name, picture, told)
         for missing in show_objects(scene, cell):
             raise PictureError(missing)
     context.window.scene = scene
@@ -66,12 +67,16 @@ def shown_first(cell: Cell) -> str | None:
     return cell.sightings[0].picture if cell.sightings else None
 
 
-def show_picture(scene: Any, name: str, picture: Any) -> None:
-    """Show a picture (H, W, 3), undistorted, behind the camera view. Raises PictureError."""
+def show_picture(scene: Any, name: str, picture: Any, told: tuple[str, ...] = ()) -> None:
+    """Show a picture (H, W, 3), undistorted, behind the camera view. Raises PictureError.
+
+    `told` is what is said of it while it is shown.
+    """
     from ..scene.background import show_background
 
     show_background(_camera_of(scene), picture, bare_cell(scene).camera.intrinsics)
     scene.monocell_cell.shown_picture = name
+    scene.monocell_cell.shown_told = "; ".join(told)
 
 
 def show_named_picture(scene: Any, name: str) -> None:
@@ -79,11 +84,12 @@ def show_named_picture(scene: Any, name: str) -> None:
 
     Raises PictureError.
     """
-    from ..core.picture.pictures import read_picture
+    from ..core.picture.pictures import read_picture_told
 
     if scene.monocell_cell.shown_picture != name:
         cell = bare_cell(scene)
-        show_picture(scene, name, read_picture(cell.path_of(name), cell.camera.intrinsics))
+        picture, told = read_picture_told(cell.path_of(name), cell.camera.intrinsics)
+        show_picture(scene, name, picture, told)
 
 
 def show_picture_again(scene: Any) -> None:

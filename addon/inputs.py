@@ -6,11 +6,13 @@ from bpy.props import (
     BoolProperty,
     EnumProperty,
     FloatProperty,
-    FloatVectorProperty,
     StringProperty,
 )
 
 from ..core.sighting import LEAST_RADIUS, MOST_RADIUS
+from .fields import LENS_MODELS, length_property, pixels_property, place_property, unit_property
+
+CENTRE_TOLD = "Centre of the ball, or the point, in the world, metres"
 
 
 class SceneInputs(bpy.types.PropertyGroup):
@@ -43,20 +45,18 @@ class SceneInputs(bpy.types.PropertyGroup):
         "wrote or told with --json",
         subtype="FILE_PATH",
     )
-    focal_x: FloatProperty(
-        name="fx",
-        description="Focal length along the picture's rows, pixels",
+    focal_x: pixels_property(
+        "fx",
+        "Focal length along the picture's rows, pixels",
         default=1000.0,
         min=1.0,
         soft_max=5000.0,
-        precision=3,
     )
-    focal_y: FloatProperty(
-        name="fy",
-        description="Focal length down the picture, pixels; 0: the same as fx",
+    focal_y: pixels_property(
+        "fy",
+        "Focal length down the picture, pixels; 0: the same as fx",
         min=0.0,
         soft_max=5000.0,
-        precision=3,
     )
     field_degrees: FloatProperty(
         name="Field of view",
@@ -71,25 +71,18 @@ class SceneInputs(bpy.types.PropertyGroup):
         description="Whether the principal point is taken to be the middle of the picture",
         default=True,
     )
-    centre_x: FloatProperty(
-        name="cx",
-        precision=3,
-        description="Principal point, pixels to the right of the centre of the top-left pixel",
+    centre_x: pixels_property(
+        "cx",
+        "Principal point, pixels to the right of the centre of the top-left pixel",
     )
-    centre_y: FloatProperty(
-        name="cy",
-        precision=3,
-        description="Principal point, pixels down from the centre of the top-left pixel",
+    centre_y: pixels_property(
+        "cy",
+        "Principal point, pixels down from the centre of the top-left pixel",
     )
     lens_model: EnumProperty(
         name="Lens",
         description="Model of the lens distortion",
-        items=(
-            ("none", "No distortion", "A perfect lens, or a picture that was rectified"),
-            ("plumb_bob", "Plumb bob", "k1 k2 p1 p2 k3, as OpenCV and ROS calibrate by default"),
-            ("rational_polynomial", "Rational", "k1 k2 p1 p2 k3 k4 k5 k6"),
-            ("equidistant", "Fisheye", "k1 k2 k3 k4 of OpenCV's fisheye model"),
-        ),
+        items=LENS_MODELS,
     )
     coefficients: StringProperty(
         name="Coefficients",
@@ -108,26 +101,15 @@ class SceneInputs(bpy.types.PropertyGroup):
         description="Draw the active reference as a grid on the picture",
         default=True,
     )
-    ball_radius: FloatProperty(
-        name="Ball radius",
-        description="Radius of the ball of new sightings, metres",
+    ball_radius: length_property(
+        "Ball radius",
+        "Radius of the ball of new sightings, metres",
         default=0.04,
         min=LEAST_RADIUS,
         max=MOST_RADIUS,
         soft_max=0.5,
-        precision=4,
-        unit="LENGTH",
     )
-    position_unit: EnumProperty(
-        name="Unit",
-        description="Unit of pasted and read positions whose heading names none",
-        items=(
-            ("m", "m", "Metres"),
-            ("mm", "mm", "Millimetres, as most robot pendants show"),
-            ("cm", "cm", "Centimetres"),
-            ("in", "in", "Inches"),
-        ),
-    )
+    position_unit: unit_property()
     place_source: EnumProperty(
         name="Place",
         description="What tells where the ball or the point is in the world",
@@ -138,14 +120,7 @@ class SceneInputs(bpy.types.PropertyGroup):
             ("JOINTS", "Joints", "Joint angles through the robot's URDF"),
         ),
     )
-    place: FloatVectorProperty(
-        name="Place",
-        description="Centre of the ball, or the point, in the world, metres",
-        size=3,
-        subtype="XYZ",
-        unit="LENGTH",
-        precision=4,
-    )
+    place: place_property("Place", CENTRE_TOLD)
     urdf: StringProperty(
         name="URDF",
         description="Robot description file; meshes need not be there",
@@ -162,7 +137,10 @@ class SceneInputs(bpy.types.PropertyGroup):
     joint_unit: EnumProperty(
         name="Angles",
         description="Unit of the joint angles",
-        items=(("DEGREES", "Degrees", ""), ("RADIANS", "Radians", "")),
+        items=(
+            ("DEGREES", "Degrees", "A full turn is 360"),
+            ("RADIANS", "Radians", "A full turn is 2 π"),
+        ),
     )
     offset_known: BoolProperty(
         name="Offset known",
@@ -170,11 +148,6 @@ class SceneInputs(bpy.types.PropertyGroup):
         "for, from the flange's poses; then every sighting has to tell its flange",
         default=True,
     )
-    offset: FloatVectorProperty(
-        name="Offset",
-        description="The ball's centre, or the point, in the frame of the flange or object, metres",
-        size=3,
-        subtype="XYZ",
-        unit="LENGTH",
-        precision=4,
+    offset: place_property(
+        "Offset", "The ball's centre, or the point, in the frame of the flange or object, metres"
     )

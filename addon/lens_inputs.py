@@ -2,7 +2,9 @@
 """The board that a lens is estimated from, filled in by the user, and what came of it."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import EnumProperty, StringProperty
+
+from .fields import LENS_MODELS, count_property, length_property
 
 
 def _dictionaries(group, context, typed):
@@ -22,51 +24,47 @@ class LensInputs(bpy.types.PropertyGroup):
             ("charuco", "ChArUco", "A chessboard with markers; a part of it may be hidden"),
         ),
     )
-    corners_x: IntProperty(
-        name="Inner corners across",
-        description="Inner corners along the chessboard's longer side: one fewer than its squares",
-        default=9,
-        min=3,
-        max=59,
+    corners_x: count_property(
+        "Inner corners across",
+        "Inner corners along the chessboard's longer side: one fewer than its squares",
+        9,
+        3,
+        59,
     )
-    corners_y: IntProperty(
-        name="Inner corners down",
-        description="Inner corners along the chessboard's shorter side: one fewer than its squares",
-        default=6,
-        min=3,
-        max=59,
+    corners_y: count_property(
+        "Inner corners down",
+        "Inner corners along the chessboard's shorter side: one fewer than its squares",
+        6,
+        3,
+        59,
     )
-    squares_x: IntProperty(
-        name="Squares across",
-        description="Squares of the ChArUco board from left to right",
-        default=7,
-        min=3,
-        max=60,
+    squares_x: count_property(
+        "Squares across",
+        "Squares of the ChArUco board from left to right",
+        7,
+        3,
+        60,
     )
-    squares_y: IntProperty(
-        name="Squares down",
-        description="Squares of the ChArUco board from top to bottom",
-        default=5,
-        min=3,
-        max=60,
+    squares_y: count_property(
+        "Squares down",
+        "Squares of the ChArUco board from top to bottom",
+        5,
+        3,
+        60,
     )
-    square: FloatProperty(
-        name="Square",
-        description="Side of one square, metres: measure across all of them and divide",
+    square: length_property(
+        "Square",
+        "Side of one square, metres: measure across all of them and divide",
         default=0.025,
         min=1e-4,
         max=1.0,
-        precision=4,
-        unit="LENGTH",
     )
-    marker: FloatProperty(
-        name="Marker",
-        description="Side of one marker with its black rim, metres; smaller than a square",
+    marker: length_property(
+        "Marker",
+        "Side of one marker with its black rim, metres; smaller than a square",
         default=0.018,
         min=1e-4,
         max=1.0,
-        precision=4,
-        unit="LENGTH",
     )
     dictionary: StringProperty(
         name="Dictionary",
@@ -79,10 +77,7 @@ class LensInputs(bpy.types.PropertyGroup):
         description="Model of the lens distortion that is fitted",
         items=(
             ("auto", "Smallest that fits", "The smallest that foretells unseen corners as well"),
-            ("none", "No distortion", "A perfect lens, or pictures that were rectified"),
-            ("plumb_bob", "Plumb bob", "k1 k2 p1 p2 k3, as OpenCV and ROS calibrate by default"),
-            ("rational_polynomial", "Rational", "k1 k2 p1 p2 k3 k4 k5 k6, for wide lenses"),
-            ("equidistant", "Fisheye", "k1 k2 k3 k4 of OpenCV's fisheye model"),
+            *LENS_MODELS,
         ),
     )
     estimate: StringProperty(

@@ -18,16 +18,6 @@ KIND_ICONS = {
     "sphere": "MESH_UVSPHERE",
     "cone": "MESH_CONE",
     "tube": "MESH_TORUS",
-    "prism": "MESH_DATA",
-}
-
-
-KIND_ICONS = {
-    "box": "MESH_CUBE",
-    "cylinder": "MESH_CYLINDER",
-    "sphere": "MESH_UVSPHERE",
-    "cone": "MESH_CONE",
-    "tube": "MESH_TORUS",
     "prism": "MESH_ICOSPHERE",
 }
 

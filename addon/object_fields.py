@@ -2,9 +2,10 @@
 """The active object's sizes as fields of the sidebar: typed numbers and locks in, edits out."""
 
 import bpy
-from bpy.props import BoolProperty, FloatProperty, StringProperty
+from bpy.props import BoolProperty, StringProperty
 
 from ..core.errors import MonocellError
+from .fields import length_property
 from .model_changes import active_object, change_model
 from .place_inputs import decimals
 
@@ -78,11 +79,9 @@ def _change(group, place, metres):
 
 
 def _length(place):
-    return FloatProperty(
-        name="Size",
-        description="Full length or radius, metres. What is typed is held; the rest is solved",
-        unit="LENGTH",
-        precision=4,
+    return length_property(
+        "Size",
+        "Full length or radius, metres. What is typed is held; the rest is solved",
         get=_size(place),
         set=_set_size(place),
     )
@@ -106,6 +105,6 @@ class ObjectFields(bpy.types.PropertyGroup):
     known_0: _held(0)
     known_1: _held(1)
     known_2: _held(2)
-    about: StringProperty(name="The object that the last number was typed of")
-    refusal: StringProperty(name="Why the last number was refused")
-    warning: StringProperty(name="What is doubtful about the last number")
+    about: StringProperty(name="About", description="The object that the last number was typed of")
+    refusal: StringProperty(name="Refusal", description="Why the last number was refused")
+    warning: StringProperty(name="Warning", description="What is doubtful about the last number")

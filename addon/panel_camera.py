@@ -14,7 +14,6 @@ from .operators.add_pictures import AddPictures
 from .operators.add_point import AddPoint
 from .operators.add_sighting import AddSighting
 from .operators.calibrate import Calibrate
-from .operators.cancel_work import CancelWork
 from .operators.clear_window import ClearWindow
 from .operators.drag_window import DragWindow
 from .operators.find_all import FindAll
@@ -23,9 +22,17 @@ from .operators.paste_sightings import PasteSightings
 from .operators.read_sightings import ReadSightings
 from .operators.remove_sighting import RemoveSighting
 from .operators.show_picture import ShowPicture
-from .panel_parts import VERDICT_ICONS, CellPanel, next_thing, numbers, paragraph, standing
+from .panel_parts import (
+    VERDICT_ICONS,
+    CellPanel,
+    draw_work,
+    next_thing,
+    numbers,
+    paragraph,
+    standing,
+)
 from .preferences import settings
-from .steps import FEWEST_SIGHTINGS, camera_step
+from .steps import FEWEST_SIGHTINGS, camera_step, is_posed
 
 
 class CameraPanel(CellPanel, bpy.types.Panel):
@@ -45,30 +52,79 @@ class CameraPanel(CellPanel, bpy.types.Panel):
         if not has_cell(scene):
             return
         cell = bare_cell(scene)
-        if cell.sightings:
-            _draw_sightings(layout, context, cell)
-        if len(cell.sightings) < FEWEST_SIGHTINGS:
-            draw_adding(layout, context)
-        _draw_work(layout, context)
-        _draw_pose(layout, context, cell)
+        if not is_posed(scene):
+            if cell.sightings:
+                draw_sightings(layout, context, cell)
+            if len(cell.sightings) < FEWEST_SIGHTINGS:
+                draw_adding(layout, context)
+        _draw_verdict(layout, context, cell)
+        # what is done needs no button at hand: the sightings have it
+        if camera_step(scene).mark != "done" or context.window_manager.monocell_work.title:
+            _draw_work(layout, context, cell)
+
+
+class AccuracyPanel(CellPanel, bpy.types.Panel):
+    """Where the camera is and how surely, and where to hold the ball next."""
+
+    bl_idname = "MONOCELL_PT_accuracy"
+    bl_parent_id = CameraPanel.bl_idname
+    bl_label = ""
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Once there is a pose."""
+        return is_posed(context.scene)
+
+    def draw_header(self, context):
+        """How much there is to read."""
+        report = stored_report(context.scene)
+        count = len(report.warnings) if report is not None else 0
+        remarks = "" if not count else ", 1 remark" if count == 1 else f", {count} remarks"
+        self.layout.label(text=f"Accuracy{remarks}")
+
+    def draw(self, context):
+        """Blender's call."""
+        layout, unit = self.layout, settings(context).unit
+        camera, report = bare_cell(context.scene).camera, stored_report(context.scene)
+        numbers(layout, _pose_rows(camera, report, unit))
+        if report is None:
+            return
+        if report.verdict == "good":
+            draw_warnings(layout, context, report)
+        if report.advice:
+            layout.label(text="Hold the ball here next", icon="OUTLINER_OB_LIGHTPROBE")
+            numbers(layout, _advice_rows(report, unit))
 
 
 class SightingsPanel(CellPanel, bpy.types.Panel):
-    """Adds sightings: from files, from what was copied, from a place and the picture shown."""
+    """The sightings once they did their work, and ways to add more."""
 
     bl_idname = "MONOCELL_PT_sightings"
     bl_parent_id = CameraPanel.bl_idname
-    bl_label = "More Sightings"
+    bl_label = ""
     bl_options: ClassVar = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):
         """Until there are enough, the panel above shows the same."""
         scene = context.scene
-        return has_cell(scene) and len(scene.monocell_cell.sightings) >= FEWEST_SIGHTINGS
+        enough = has_cell(scene) and len(scene.monocell_cell.sightings) >= FEWEST_SIGHTINGS
+        return enough or is_posed(scene)
+
+    def draw_header(self, context):
+        """What it holds."""
+        count = len(context.scene.monocell_cell.sightings)
+        told = f"Sightings: {count}" if is_posed(context.scene) else "More Sightings"
+        self.layout.label(text=told)
 
     def draw(self, context):
         """Blender's call."""
+        cell = bare_cell(context.scene)
+        if is_posed(context.scene) and cell.sightings:
+            draw_sightings(self.layout, context, cell)
+            if camera_step(context.scene).mark == "done":
+                _draw_work(self.layout, context, cell)
         draw_adding(self.layout, context)
 
 
@@ -113,7 +169,8 @@ def _draw_place(layout, context, inputs):
         column.prop(inputs, "offset", text="")
 
 
-def _draw_sightings(layout, context, cell):
+def draw_sightings(layout, context, cell):
+    """The list, what is done with the active one, and its numbers."""
     stored = context.scene.monocell_cell
     row = layout.row()
     row.template_list(
@@ -139,42 +196,51 @@ def _draw_sightings(layout, context, cell):
             column.prop(active, "radius")
 
 
-def _draw_work(layout, context):
-    work = context.window_manager.monocell_work
-    if work.title:
-        row = layout.row(align=True)
-        row.progress(factor=work.share, text=f"{work.title}: {work.name}")
-        row.operator(CancelWork.bl_idname, text="", icon="CANCEL")
-        return
-    known = bare_cell(context.scene).camera.camera_from_world is not None
+def _draw_work(layout, context, cell):
     row = layout.row(align=True)
     row.scale_y = 1.3
+    if context.window_manager.monocell_work.title:
+        draw_work(row, context)
+        return
+    if not cell.sightings:
+        return
     row.operator(FindAll.bl_idname, icon="VIEWZOOM")
     row.operator(
         Calibrate.bl_idname,
-        text="Calibrate Again" if known else "Calibrate",
+        text="Calibrate Again" if is_posed(context.scene) else "Calibrate",
         icon="CON_CAMERASOLVER",
     )
 
 
-def _draw_pose(layout, context, cell):
-    camera, report = cell.camera, stored_report(context.scene)
+def _draw_verdict(layout, context, cell):
+    """What became of the calibration, in a line; why not, where it is not good."""
+    report = stored_report(context.scene)
     if report is not None and report.verdict:
-        layout.label(text=f"Calibration {report.verdict}", icon=VERDICT_ICONS[report.verdict])
-    if camera.camera_from_world is not None:
-        if not camera_stands(context.scene):
-            alert = layout.column()
-            alert.alert = True
-            paragraph(alert, context, "Blender's camera was changed; models miss the picture.")
-            layout.operator(LookThrough.bl_idname, text="Put It Back", icon="VIEW_CAMERA")
-        numbers(layout, _pose_rows(camera, report, settings(context).unit))
-    if report is None:
-        return
+        layout.label(
+            text=verdict(report, settings(context).unit), icon=VERDICT_ICONS[report.verdict]
+        )
+    if is_posed(context.scene) and not camera_stands(context.scene):
+        alert = layout.column()
+        alert.alert = True
+        paragraph(alert, context, "Blender's camera was changed; models miss the picture.")
+        layout.operator(LookThrough.bl_idname, text="Put It Back", icon="VIEW_CAMERA")
+    if report is not None and report.verdict != "good":
+        draw_warnings(layout, context, report)
+
+
+def draw_warnings(layout, context, report):
+    """What is doubtful, each in its own lines."""
     for warning in report.warnings:
         paragraph(layout, context, warning, "DOT")
-    if report.advice:
-        layout.label(text="Hold the ball here next", icon="OUTLINER_OB_LIGHTPROBE")
-        numbers(layout, _advice_rows(report, settings(context).unit))
+
+
+def verdict(report, unit):
+    """What came of the calibration, and how well a point worked at is known, in a line."""
+    before = " before the search" if report.searched else ""
+    if report.surface_millimetres is None:
+        return f"Calibration {report.verdict}{before}"
+    told = length(1e-3 * report.surface_millimetres, unit, finer=1)
+    return f"{report.verdict.capitalize()}{before}: ± {told} on {report.surface}"
 
 
 def _pose_rows(camera, report, unit):

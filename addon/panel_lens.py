@@ -2,9 +2,8 @@
 """The fields that state a camera: file, numbers, angle, or a board and what it told."""
 
 from .lens_estimate import parse_estimate
-from .operators.cancel_work import CancelWork
 from .operators.estimate_lens import EstimateLens
-from .panel_parts import VERDICT_ICONS, numbers, paragraph
+from .panel_parts import VERDICT_ICONS, draw_work, numbers, paragraph
 
 
 def camera_inputs(layout, context):
@@ -14,7 +13,11 @@ def camera_inputs(layout, context):
     if inputs.camera_source == "BOARD":
         lens = context.scene.monocell_lens
         board_inputs(layout, lens)
-        work_or(layout, context, EstimateLens.bl_idname, "Estimate from Pictures", "IMAGE_DATA")
+        if context.window_manager.monocell_work.title:
+            draw_work(layout.row(align=True), context)
+        else:
+            text = "Estimate from Pictures"
+            layout.operator(EstimateLens.bl_idname, text=text, icon="IMAGE_DATA")
         draw_estimate(layout, context, lens)
         return
     column = layout.column(align=True)
@@ -59,17 +62,6 @@ def draw_estimate(layout, context, lens):
     numbers(layout, _rows(found))
     for warning in found.warnings:
         paragraph(layout, context, warning, "DOT")
-
-
-def work_or(layout, context, idname, text, icon):
-    """A button, or while something is done in the background its progress and a way out."""
-    work = context.window_manager.monocell_work
-    if not work.title:
-        layout.operator(idname, text=text, icon=icon)
-        return
-    row = layout.row(align=True)
-    row.progress(factor=work.share, text=f"{work.title}: {work.name}")
-    row.operator(CancelWork.bl_idname, text="", icon="CANCEL")
 
 
 def _rows(found):

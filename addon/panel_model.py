@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar's third step: what things stand on, and the things."""
 
+from typing import ClassVar
+
 import bpy
 
-from .document import bare_cell, has_cell
+from .document import bare_cell
 from .lists import ObjectList, ReferenceList
 from .operators.add_box import AddBox
 from .operators.add_cone import AddCone
 from .operators.add_cylinder import AddCylinder
-from .operators.add_frustum import AddFrustum
 from .operators.add_parallel_plane import AddParallelPlane
 from .operators.add_prism import AddPrism
 from .operators.add_sphere import AddSphere
@@ -21,7 +22,7 @@ from .operators.propose import Propose
 from .operators.remove_reference import RemoveReference
 from .operators.solve_again import SolveAgain
 from .panel_parts import CellPanel, next_thing, paragraph, standing
-from .steps import count_objects, model_step
+from .steps import count_objects, is_posed, model_step
 
 REVIEW = "See the picture: what is green would be taken. Enter takes it, Esc leaves all as it was."
 TOOLS = (
@@ -30,13 +31,12 @@ TOOLS = (
     (AddSphere, "Sphere", "MESH_UVSPHERE"),
     (AddPrism, "Prism", "MESH_ICOSPHERE"),
     (AddCone, "Cone", "MESH_CONE"),
-    (AddFrustum, "Frustum", "MESH_CONE"),
     (AddTube, "Tube", "MESH_TORUS"),
 )
 
 
 class ModelPanel(CellPanel, bpy.types.Panel):
-    """Adds objects, and shows their sizes with 1 sigma."""
+    """Adds objects, and lists them."""
 
     bl_idname = "MONOCELL_PT_model"
     bl_label = "Model"
@@ -51,56 +51,93 @@ class ModelPanel(CellPanel, bpy.types.Panel):
         if context.window_manager.monocell_work.reviewing:
             paragraph(layout, context, REVIEW, "INFO")
             return
-        next_thing(layout, context, model_step(scene))
-        if not has_cell(scene) or bare_cell(scene).camera.camera_from_world is None:
+        step = model_step(scene)
+        next_thing(layout, context, step)
+        if not is_posed(scene):
             return
-        stored = scene.monocell_cell
-        layout.label(text="Stands on")
-        row = layout.row()
-        row.template_list(
-            ReferenceList.bl_idname,
-            "",
-            stored,
-            "references",
-            stored,
-            "reference_index",
-            rows=2,
-            maxrows=4,
-        )
-        _draw_references(row.column(align=True))
+        if step.mark == "doubt" or bare_cell(scene).sketches:
+            draw_solving(layout)
+        _draw_reference(layout, scene)
         tools = layout.grid_flow(row_major=True, columns=3, even_columns=True, align=True)
-        tools.scale_y = 1.2
         for tool, text, icon in TOOLS:
             tools.operator(tool.bl_idname, text=text, icon=icon)
-        layout.operator(Propose.bl_idname, icon="VIEWZOOM")
-        row = layout.row(align=True)
-        row.prop(scene.monocell_inputs, "pick_sigma_pixels", text="Pick noise (px)")
-        row.prop(scene.monocell_inputs, "show_grid", text="", icon="GRID")
-        self._draw_objects(layout, context)
-
-    def _draw_objects(self, layout, context):
-        stored = context.scene.monocell_cell
-        if count_objects(context.scene):
+        if count_objects(scene):
+            stored = scene.monocell_cell
             layout.template_list(
-                ObjectList.bl_idname,
-                "",
-                context.scene,
-                "objects",
-                stored,
-                "object_index",
-                rows=3,
+                *(ObjectList.bl_idname, "", scene, "objects", stored, "object_index"),
+                rows=2,
+                maxrows=3,
             )
+
+
+class ReferencesPanel(CellPanel, bpy.types.Panel):
+    """What things can stand on, and how it is shown."""
+
+    bl_idname = "MONOCELL_PT_references"
+    bl_parent_id = ModelPanel.bl_idname
+    bl_label = "References"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Once there is a pose."""
+        return is_posed(context.scene)
+
+    def draw(self, context):
+        """Blender's call."""
+        layout, stored = self.layout, context.scene.monocell_cell
+        row = layout.row()
+        row.template_list(
+            *(ReferenceList.bl_idname, "", stored, "references", stored, "reference_index"),
+            rows=3,
+            maxrows=6,
+        )
+        column = row.column(align=True)
+        column.operator(PickReference.bl_idname, text="", icon="EYEDROPPER")
+        column.menu(ReferenceMenu.bl_idname, text="", icon="ADD")
+        column.operator(RemoveReference.bl_idname, text="", icon="REMOVE")
         row = layout.row(align=True)
-        row.operator(SolveAgain.bl_idname, text="Solve All", icon="FILE_REFRESH")
-        row.operator(SolveAgain.bl_idname, text="Together", icon="LINKED").joint = True
-        row.operator(Align.bl_idname, text="Align All", icon="SNAP_EDGE").everything = True
+        row.prop(context.scene.monocell_inputs, "show_grid", text="Grid", icon="GRID", toggle=True)
+        row.prop(context.scene.monocell_inputs, "pick_sigma_pixels", text="Pick noise (px)")
 
 
-def _draw_references(column):
-    """Ways to a new reference beside their list."""
-    column.operator(PickReference.bl_idname, text="", icon="EYEDROPPER")
-    column.menu(ReferenceMenu.bl_idname, text="", icon="ADD")
-    column.operator(RemoveReference.bl_idname, text="", icon="REMOVE")
+class AllObjectsPanel(CellPanel, bpy.types.Panel):
+    """What is done with the whole model."""
+
+    bl_idname = "MONOCELL_PT_all_objects"
+    bl_parent_id = ModelPanel.bl_idname
+    bl_label = "All Objects"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        """Once there is a pose."""
+        return is_posed(context.scene)
+
+    def draw(self, context):
+        """Blender's call."""
+        draw_solving(self.layout)
+        self.layout.operator(Align.bl_idname, text="Align All", icon="SNAP_EDGE").everything = True
+
+
+def draw_solving(layout):
+    """Ways to solve all that was picked."""
+    row = layout.row(align=True)
+    row.operator(SolveAgain.bl_idname, text="Solve All", icon="FILE_REFRESH")
+    row.operator(SolveAgain.bl_idname, text="Together", icon="LINKED").joint = True
+
+
+def _draw_reference(layout, scene):
+    """What new objects stand on, and ways to something else."""
+    stored = scene.monocell_cell
+    index = stored.reference_index
+    there = 0 <= index < len(stored.references)
+    row = layout.row(align=True)
+    row.label(text=f"New on {stored.references[index].name}" if there else "On nothing")
+    row.operator(PickReference.bl_idname, text="", icon="EYEDROPPER")
+    row.menu(ReferenceMenu.bl_idname, text="", icon="ADD")
+    row.separator()
+    row.operator(Propose.bl_idname, icon="VIEWZOOM")
 
 
 class ReferenceMenu(bpy.types.Menu):

@@ -55,14 +55,16 @@ class ObjectPanel(CellPanel, bpy.types.Panel):
         draw_sizes(layout, context, thing)
         numbers(layout, place_rows(thing, settings(context).unit))
         draw_holding(layout, thing)
-        row = layout.row(align=True)
-        row.operator(SetMotion.bl_idname, text=f"Motion: {thing.motion.kind}", icon="CON_PIVOT")
+        column = layout.column(align=True)
+        row = column.row(align=True)
         if thing.picks:
-            layout.operator(MovePick.bl_idname, text="Drag a Pick", icon="SNAP_MIDPOINT")
-        layout.operator(Align.bl_idname, icon="SNAP_EDGE").name = thing.name
-        row = layout.row(align=True)
+            row.operator(MovePick.bl_idname, text="Drag a Pick", icon="SNAP_MIDPOINT")
+        row.operator(Align.bl_idname, text="Align", icon="SNAP_EDGE").name = thing.name
+        row = column.row(align=True)
         row.operator(TakeColors.bl_idname, text="Colour", icon="EYEDROPPER")
         row.operator(TakeTextures.bl_idname, text="Texture", icon="TEXTURE")
+        moves = f"Motion: {thing.motion.kind}"
+        column.operator(SetMotion.bl_idname, text=moves, icon="CON_PIVOT")
 
 
 def draw_sizes(layout, context, thing):

@@ -3,6 +3,8 @@
 
 import textwrap
 
+from .operators.cancel_work import CancelWork
+
 # a sidebar of usual width holds about so many letters a line at the usual interface scale
 LETTER_WIDTH = 6.6
 EDGE_WIDTH = 46
@@ -48,6 +50,13 @@ def next_thing(layout, context, step):
     """What the step says comes next; a doubt has its sign."""
     if step.said:
         paragraph(layout, context, step.said, "ERROR" if step.mark == "doubt" else "NONE")
+
+
+def draw_work(row, context):
+    """How far the work in the background is, and a way out."""
+    work = context.window_manager.monocell_work
+    row.progress(factor=work.share, text=f"{work.title}: {work.name}")
+    row.operator(CancelWork.bl_idname, text="", icon="CANCEL")
 
 
 MARKS = {"done": "CHECKMARK", "next": "RIGHTARROW_THIN", "waiting": "BLANK1", "doubt": "ERROR"}

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar's first step: which picture, taken by which camera."""
 
+from pathlib import PurePath
 from typing import ClassVar
 
 import bpy
 
+from .camera_view import camera_region
 from .document import bare_cell, has_cell
 from .operators.change_camera import ChangeCamera
 from .operators.find_pictures import FindPictures
@@ -13,7 +15,7 @@ from .operators.open_cell import OpenCell
 from .operators.open_picture import OpenPicture
 from .operators.open_sample import SAMPLES, OpenSample
 from .panel_lens import camera_inputs
-from .panel_parts import CellPanel, next_thing, numbers, standing
+from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
 from .steps import picture_step
 
 SAMPLE_ICONS = {"STACK": "OUTLINER_OB_CAMERA", "TABLE": "FILE_3D"}
@@ -34,7 +36,9 @@ class PicturePanel(CellPanel, bpy.types.Panel):
         layout, scene = self.layout, context.scene
         next_thing(layout, context, picture_step(scene))
         if has_cell(scene):
-            _draw_opened(layout, scene)
+            if scene.monocell_cell.shown_told:
+                paragraph(layout, context, scene.monocell_cell.shown_told, "INFO")
+            _draw_opened(layout, context)
         else:
             _draw_start(layout, context)
 
@@ -55,19 +59,31 @@ def _draw_start(layout, context):
     opened.picture = inputs.picture
 
 
-def _draw_opened(layout, scene):
+def _draw_opened(layout, context):
+    scene = context.scene
     stored = scene.monocell_cell
     if stored.camera is not None and len(stored.camera.data.background_images):
         plate = stored.camera.data.background_images[0]
         row = layout.row(align=True)
-        seen = "HIDE_OFF" if plate.show_background_image else "HIDE_ON"
-        row.prop(plate, "show_background_image", text="", icon=seen)
-        row.prop(plate, "alpha", text="Opacity", slider=True)
+        eye = "HIDE_OFF" if plate.show_background_image else "HIDE_ON"
+        row.prop(plate, "show_background_image", text="", icon=eye)
+        # which of the cell's pictures is seen is told where it is faded
+        told = f"Opacity of {PurePath(stored.shown_picture).name}" if stored.shown_picture else ""
+        row.prop(plate, "alpha", text=told or "Opacity", slider=True)
+        row.separator()
+        row.operator(OpenCell.bl_idname, text="", icon="FILE_FOLDER")
     if picture_step(scene).mark == "doubt" and stored.shown_picture:
         layout.operator(FindPictures.bl_idname, icon="VIEWZOOM")
-    row = layout.row(align=True)
-    row.operator(LookThrough.bl_idname, text="Look Through", icon="VIEW_CAMERA")
-    row.operator(OpenCell.bl_idname, text="Open Another", icon="FILE_FOLDER")
+    if not _looks_through(context):
+        layout.operator(LookThrough.bl_idname, icon="VIEW_CAMERA")
+
+
+def _looks_through(context):
+    """Whether this viewport shows the picture already."""
+    camera, area = context.scene.monocell_cell.camera, context.area
+    if camera is None or area is None or not camera.visible_get(viewport=context.space_data):
+        return False
+    return camera_region(context.scene, area) is not None
 
 
 class LensPanel(CellPanel, bpy.types.Panel):

@@ -4,6 +4,7 @@
 import bpy
 
 from .document import has_cell
+from .menus import ExportMenu
 from .operators.export_gltf import ExportCell
 from .operators.save_cell import SaveCell
 from .operators.take_colors import TakeColors
@@ -35,5 +36,7 @@ class UsePanel(CellPanel, bpy.types.Panel):
                 TakeTextures.bl_idname, text="All Textures", icon="TEXTURE"
             ).everything = True
             column = layout.column(align=True)
-            column.operator(ExportCell.bl_idname, text="Export glTF", icon="EXPORT")
+            row = column.row(align=True)
+            row.operator(ExportCell.bl_idname, text="Export glTF", icon="EXPORT").format = "GLB"
+            row.menu(ExportMenu.bl_idname, text="Export ...")
             column.operator(SaveCell.bl_idname, icon="FILE_TICK")

@@ -89,10 +89,10 @@ class Preferences(bpy.types.AddonPreferences):
         name="Unit",
         description="Unit of the sizes that panels show; documents are always in metres",
         items=(
-            ("mm", "Millimetres", ""),
-            ("cm", "Centimetres", ""),
-            ("m", "Metres", ""),
-            ("in", "Inches", ""),
+            ("mm", "Millimetres", "Sizes in mm, to a tenth"),
+            ("cm", "Centimetres", "Sizes in cm, to a hundredth"),
+            ("m", "Metres", "Sizes in m, to a tenth of a millimetre"),
+            ("in", "Inches", "Sizes and places in inches, to a thousandth"),
         ),
     )
 

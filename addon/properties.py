@@ -7,7 +7,6 @@ from bpy.props import (
     BoolProperty,
     CollectionProperty,
     FloatProperty,
-    FloatVectorProperty,
     IntProperty,
     PointerProperty,
     StringProperty,
@@ -15,7 +14,8 @@ from bpy.props import (
 
 from ..core.sighting import LEAST_RADIUS, MOST_RADIUS
 from .document import bare_cell
-from .inputs import SceneInputs
+from .fields import length_property, place_property
+from .inputs import CENTRE_TOLD, SceneInputs
 from .lens_inputs import LensInputs
 from .object_fields import ObjectFields
 from .place_inputs import decimals
@@ -60,46 +60,35 @@ def _set_radius(row, value):
 class SightingRow(bpy.types.PropertyGroup):
     """One line of the list of sightings: texts to show, and doors to the document's numbers."""
 
-    index: IntProperty(name="Its number in the document, from 0")
-    kind: StringProperty(name="ball, point, or flange where the offset is unknown")
+    index: IntProperty(name="Index", description="Its number in the document, from 0")
+    kind: StringProperty(name="Kind", description="Whether a ball or a point was seen")
     use: BoolProperty(
         name="Use",
         description="Whether it takes part in finding and calibrating",
         get=_use,
         set=_set_use,
     )
-    center: FloatVectorProperty(
-        name="Place",
-        description="Centre of the ball, or the point, in the world, metres",
-        size=3,
-        subtype="XYZ",
-        unit="LENGTH",
-        precision=4,
-        get=_place,
-        set=_set_place,
-    )
-    radius: FloatProperty(
-        name="Radius",
-        description="Radius of the ball, metres",
+    center: place_property("Place", CENTRE_TOLD, get=_place, set=_set_place)
+    radius: length_property(
+        "Radius",
+        "Radius of the ball, metres",
         min=LEAST_RADIUS,
         max=MOST_RADIUS,
-        precision=4,
-        unit="LENGTH",
         get=_radius,
         set=_set_radius,
     )
-    picture: StringProperty(name="Picture")
-    status: StringProperty(name="Status")
-    residual: StringProperty(name="Residual, pixels rms")
-    reason: StringProperty(name="Reason")
+    picture: StringProperty(name="Picture", description="Its name as the document has it")
+    status: StringProperty(name="Status", description="What the search or calibration made of it")
+    residual: StringProperty(name="Residual", description="What the pose leaves of it, pixels rms")
+    reason: StringProperty(name="Reason", description="Why it is doubtful or rejected")
 
 
 class ReferenceRow(bpy.types.PropertyGroup):
     """One line of the list of references."""
 
-    name: StringProperty(name="Name")
-    kind: StringProperty(name="Kind")
-    place: StringProperty(name="Where it lies in the world")
+    name: StringProperty(name="Name", description="What objects call it by")
+    kind: StringProperty(name="Kind", description="Whether it is a plane or a line")
+    place: StringProperty(name="Place", description="Where it lies in the world, metres")
 
 
 def _active_index(cell):
@@ -123,22 +112,39 @@ class SceneCell(bpy.types.PropertyGroup):
     All of it is undone, saved and loaded with the scene. `document.py` alone writes it.
     """
 
-    text: StringProperty(name="Cell document without objects, JSON")
-    report: StringProperty(name="Last calibration, JSON")
-    folder: StringProperty(name="Folder that picture names start from")
-    folder_beside: StringProperty(name="The same as seen from the .blend file when it was saved")
-    path: StringProperty(name="Document this was read from or last written to")
-    outdated: StringProperty(name="Why objects have to be solved again; empty where they need not")
-    shown_picture: StringProperty(name="Picture behind the camera view")
-    camera: PointerProperty(type=bpy.types.Object, name="The cell's camera")
-    collection: PointerProperty(type=bpy.types.Collection, name="The cell's objects")
-    sightings: CollectionProperty(type=SightingRow)
-    sighting_index: IntProperty(name="Active sighting")
-    references: CollectionProperty(type=ReferenceRow)
-    reference_index: IntProperty(name="Active reference: what new objects stand on")
+    text: StringProperty(name="Document", description="The cell without its objects, JSON")
+    report: StringProperty(name="Report", description="The last search or calibration, JSON")
+    folder: StringProperty(name="Folder", description="Where picture names start")
+    path: StringProperty(name="File", description="Document it was read from or last saved as")
+    folder_beside: StringProperty(
+        name="Folder beside", description="The same as seen from the .blend file when it was saved"
+    )
+    outdated: StringProperty(
+        name="Outdated", description="Why objects have to be solved again; empty: they need not"
+    )
+    shown_picture: StringProperty(name="Shown", description="Picture behind the camera view")
+    shown_told: StringProperty(name="Told", description="What is to say of that picture")
+    camera: PointerProperty(
+        type=bpy.types.Object, name="Camera", description="The camera that took the picture"
+    )
+    collection: PointerProperty(
+        type=bpy.types.Collection, name="Objects", description="Where the cell's objects are"
+    )
+    sightings: CollectionProperty(
+        type=SightingRow, name="Sightings", description="Balls and points whose places are known"
+    )
+    sighting_index: IntProperty(
+        name="Active sighting", description="Its number in the list, from 0"
+    )
+    references: CollectionProperty(
+        type=ReferenceRow, name="References", description="What objects can stand on"
+    )
+    reference_index: IntProperty(
+        name="Active reference", description="What new objects stand on: its number, from 0"
+    )
     object_index: IntProperty(
         name="Active object",
-        description="The object whose sizes are shown; choosing one selects it",
+        description="Number of the object whose sizes are shown; choosing one selects it",
         get=_active_index,
         set=_activate,
     )
@@ -147,12 +153,18 @@ class SceneCell(bpy.types.PropertyGroup):
 class Work(bpy.types.PropertyGroup):
     """What runs in the background, for the panels; an empty title when nothing does."""
 
-    title: StringProperty(name="What is being done")
-    name: StringProperty(name="What it has come to")
-    share: FloatProperty(name="How much is done", min=0.0, max=1.0)
-    cancel: BoolProperty(name="Whether it was told to end")
-    reviewing: BoolProperty(name="Whether what would change is shown, and the model is not")
-    picking: BoolProperty(name="Whether an object is being picked, and sightings are hidden")
+    title: StringProperty(name="Work", description="What is being done; empty: nothing is")
+    name: StringProperty(name="Step", description="What it has come to")
+    share: FloatProperty(
+        name="Done", description="How much of it is done", min=0.0, max=1.0, subtype="FACTOR"
+    )
+    cancel: BoolProperty(name="Cancel", description="Whether it was told to end")
+    reviewing: BoolProperty(
+        name="Reviewing", description="Whether what would change is shown, and the model is not"
+    )
+    picking: BoolProperty(
+        name="Picking", description="Whether an object is being picked, and sightings are hidden"
+    )
 
 
 CLASSES = (SightingRow, ReferenceRow, SceneCell, SceneInputs, LensInputs, ObjectFields, Work)

@@ -7,6 +7,7 @@ import json
 
 from bpy.props import StringProperty
 
+from .fields import new_name_property
 from .model_changes import change_model, make_active
 from .on_picture import OnPicture
 from .polls import NeedsPose
@@ -56,9 +57,7 @@ class PicksUpright(OnPicture, NeedsPose):
         description="The plane that was clicked on; empty: the active reference",
         options={"SKIP_SAVE"},
     )
-    name: StringProperty(
-        name="Name", description="Empty: the first free one", options={"SKIP_SAVE"}
-    )
+    name: new_name_property("reference")
     picks: StringProperty(
         name="Picks",
         description="JSON, the clicked pixels: [[u, v], ...]",

@@ -22,6 +22,14 @@ class Reviewed(OnPicture):
         """Take all that the offer takes by itself."""
         return self.take(context, result, self.offered(context, result))
 
+    def state_of(self, scene):
+        """With where the objects stand: in Blender they move without the scene's text."""
+        from ..core.document.cell_file import document_from_cell
+        from .document import read_scene
+
+        cell = read_scene(scene)
+        return *super().state_of(scene), document_from_cell(cell, cell.folder)
+
     def arrived(self, context, event, result):
         """Show what would change, if the view looks at the picture and there is a choice."""
         from .document import read_scene

@@ -82,6 +82,11 @@ def use_step(scene: Any) -> Step:
     return Step("next", f"{said} to export.")
 
 
+def is_posed(scene: Any) -> bool:
+    """Whether the scene has a cell whose camera has a pose."""
+    return has_cell(scene) and bare_cell(scene).camera.camera_from_world is not None
+
+
 def count_objects(scene: Any) -> int:
     """How many objects the scene's cell holds."""
     from ..scene.objects import is_modelled

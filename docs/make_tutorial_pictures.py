@@ -20,29 +20,31 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "real_blender"))
 import conftest
+from monocell.core.comparison import compare_cells
 from monocell.core.document.cell_file import read_cell
+from monocell.headless.verbs.compare import told
+from sample_hand import SAMPLE, Hand
 
 ROOT = Path(__file__).resolve().parents[1]
 PICTURES = ROOT / "docs" / "pictures"
-SAMPLE = ROOT / "samples" / "01_table"
 WIDTH, LARGEST_BYTES = 900, 90_000
 # the part of the window that a step is about: left, top, right, bottom
 PARTS = {
     "start": (0, 0, 1600, 1000),
     "sample": (0, 0, 1600, 1000),
     "calibrated": (260, 0, 1600, 960),
-    "box": (0, 230, 1250, 1000),
-    "cylinder": (230, 230, 1190, 900),
-    "solved": (260, 60, 1600, 980),
-    "face": (0, 430, 950, 1000),
+    "box": (0, 100, 1320, 925),
+    "face": (0, 100, 1320, 925),
+    "cylinder": (0, 100, 1320, 925),
+    "typed": (0, 100, 1320, 925),
+    "drawn": (260, 60, 1600, 980),
+    "review": (0, 100, 1320, 1000),
     "aligned": (260, 60, 1600, 980),
     "side": (340, 270, 1140, 810),
 }
-# corners of a box in order round its base
-ROUND = (0, 1, 3, 2)
-# names in the tutorial and in the truth, and how far a size may be off once aligned, metres
-FOLLOWED = {"box": "crate", "cylinder": "drum"}
-SIZE_TOLERANCE = 2e-3
+# how far a size may be off once aligned, metres
+SIZE_TOLERANCE = 1e-3
+DRAWN = ("carton", "can", "block")
 
 
 def main() -> None:
@@ -63,7 +65,9 @@ def main() -> None:
 
 def _follow(blender: conftest.Blender, folder: Path) -> None:
     """The tutorial's steps; what the window shows and saves lies in the folder."""
-    (folder / "job.json").write_text(json.dumps(_job() | {"out": str(folder)}))
+    # a careful hand: no error but the screen's pixels
+    job = Hand(0.0, 0).job() | {"out": str(folder)}
+    (folder / "job.json").write_text(json.dumps(job))
     (folder / "found.json").unlink(missing_ok=True)
     run = blender.run(
         *("--enable-event-simulate", "--window-geometry", 0, 0, 1600, 1000),
@@ -89,47 +93,15 @@ def _blender(command: tuple[str, ...], folder: Path) -> conftest.Blender:
     return conftest.installed(command, zipped, resources)
 
 
-def _job() -> dict[str, object]:
-    """Where a careful hand clicks: pixels of the undistorted view."""
-    truth = read_cell(SAMPLE / "truth.cell.json")
-    things = {thing.name: thing for thing in truth.objects}
-    camera, pinhole = truth.camera, truth.camera.intrinsics.undistorted()
-    # the three corners of the foot that are seen, and the front one's above it
-    corners = things["crate"].corners_world()
-    seen = _view(camera, corners[:4])
-    front = int(np.argmax(seen[:, 1]))
-    at = ROUND.index(front)
-    ring = [ROUND[(at + step) % 4] for step in (-1, 0, 1)]
-    drum = things["drum"]
-    eye = camera.centre_world - drum.world_from_object.translation
-    at = np.arctan2(eye[1], eye[0]) + np.array([-1.25, 0.0, 1.25])
-    rim = drum.radius * np.stack([np.cos(at), np.sin(at)], axis=1)
-    foot = drum.world_from_object.apply(np.column_stack([rim, np.full(3, -drum.height / 2)]))
-    return {
-        "width": pinhole.width,
-        "height": pinhole.height,
-        "box": _view(camera, corners[[*ring, front + 4]]).tolist(),
-        "cylinder": _view(camera, foot).tolist(),
-        "aside": (_view(camera, foot)[1] + [-54, 110]).tolist(),
-        "zoom_at": _view(camera, corners[[ring[2]]])[0].tolist(),
-        "face": _view(camera, corners[4:].mean(axis=0)[None])[0].tolist(),
-    }
-
-
-def _view(camera, points):
-    inner = camera.intrinsics
-    return inner.undistorted().project(inner.rays(camera.project(points)))
-
-
 def _check(folder: Path) -> None:
-    truth = {thing.name: thing for thing in read_cell(SAMPLE / "truth.cell.json").objects}
-    made = {thing.name: thing for thing in read_cell(folder / "aligned.cell.json").objects}
-    for name, true_name in FOLLOWED.items():
-        sizes, true_sizes = (np.sort(thing.sizes) for thing in (made[name], truth[true_name]))
-        off = float(np.abs(sizes - true_sizes).max())
-        print(f"{name}: sizes off by {off * 1e3:.2f} mm at most")
-        if off > SIZE_TOLERANCE:
-            sys.exit(f"{name} came out as {sizes * 1e3} mm, in truth {true_sizes * 1e3}")
+    truth = read_cell(SAMPLE / "truth.cell.json")
+    for stage in ("drawn", "aligned"):
+        comparison = compare_cells(truth, read_cell(folder / f"{stage}.cell.json"))
+        print(f"{stage}\n{told(comparison)}")
+    off = {error.name: float(np.abs(error.sizes).max()) for error in comparison.objects}
+    far = [f"{name} {1e3 * off[name]:.2f} mm" for name in DRAWN if off[name] > SIZE_TOLERANCE]
+    if far:
+        sys.exit(f"sizes off by more than {1e3 * SIZE_TOLERANCE:g} mm: {', '.join(far)}")
 
 
 def _robot(folder: Path) -> None:

@@ -11,15 +11,12 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "real_blender"))
 from window_driver import (
     PAUSE,
     click,
-    event,
     found,
     handlers,
     in_view,
     job,
     move,
     out,
-    place_of,
-    press,
     run,
     save,
     settle,
@@ -27,51 +24,24 @@ from window_driver import (
     show_sidebar,
     view,
 )
+from window_user import (
+    clicked,
+    framed,
+    large_view,
+    made_active,
+    renamed,
+    reviewed,
+    scrolled,
+    stored,
+    typed,
+    worked,
+)
 
 # letters large enough to be read in a picture that a page shows at half its size
 UI_SCALE = 1.25
-ROOT_TWO = 2**0.5
-
-
-def stored():
-    """The cell of the scene."""
-    return bpy.context.scene.monocell_cell
-
-
-def worked():
-    """Wait until the work in the background has ended."""
-    yield PAUSE
-    while bpy.context.window_manager.monocell_work.title:
-        yield PAUSE
-    yield from settle()
-
-
-def typed(digits, pixel):
-    """Keys pressed one after another."""
-    for digit in digits:
-        press(digit, *place_of(pixel))
-        yield PAUSE
-
-
-def scrolled(wheel, turns=40):
-    """The sidebar at its end, or back at its beginning."""
-    _, area, _ = view()
-    sidebar = next(region for region in area.regions if region.type == "UI")
-    x, y = sidebar.x + sidebar.width // 2, sidebar.y + sidebar.height // 2
-    event("MOUSEMOVE", "NOTHING", x, y)
-    yield PAUSE
-    for _ in range(turns):
-        press(wheel, x, y)
-        yield 0.03
-    yield from settle()
-
-
-def made_active(name):
-    """One object selected, as by a click in the list."""
-    for thing in bpy.context.scene.objects:
-        thing.select_set(thing.name == name)
-    bpy.context.view_layer.objects.active = bpy.context.scene.objects[name]
-    yield from settle()
+CLOSER = 2.2
+# from the camera to the side, radians
+ASIDE = 0.5
 
 
 def steps():
@@ -80,16 +50,17 @@ def steps():
     yield from show_sidebar()
     yield from shot("start")
     yield from camera_found()
-    yield from two_drawn()
-    yield from all_solved()
-    yield from aligned_and_used()
+    yield from carton_drawn()
+    yield from can_put_on_it()
+    yield from block_drawn()
+    yield from all_aligned()
+    yield from seen_from_the_side()
+    yield from exported()
 
 
 def camera_found():
     """Sample and calibration."""
-    in_view(bpy.ops.screen.screen_full_area)
-    yield 1.0
-    yield from show_sidebar()
+    yield from large_view()
     in_view(bpy.ops.monocell.open_sample, "EXEC_DEFAULT", True)
     yield from shot("sample")
     in_view(bpy.ops.monocell.calibrate, "INVOKE_DEFAULT")
@@ -98,99 +69,106 @@ def camera_found():
     found["verdict"] = json.loads(stored().report)["verdict"]
 
 
-def framed(pixel, closer):
-    """The view zoomed and panned, as by hand, until a pixel stands in its middle."""
-    _, area, region = view()
-    eye = area.spaces.active.region_3d
-    # Blender's own law of the camera view's zoom
-    root = (ROOT_TWO + eye.view_camera_zoom / 50) * closer**0.5
-    eye.view_camera_zoom = 50 * (root - ROOT_TWO)
-    step, seen = 0.1, []
-    for offset in (0.0, step):
-        eye.view_camera_offset = (offset, offset)
-        yield from settle()
-        seen.append(place_of(pixel))
-    middle = (region.x + 0.45 * region.width, region.y + 0.4 * region.height)
-    eye.view_camera_offset = [
-        step * (to - first) / (second - first)
-        for to, first, second in zip(middle, *seen, strict=True)
-    ]
-    yield from settle()
-
-
-def two_drawn():
-    """A box by its corners, a cylinder with a typed height."""
-    in_view(bpy.ops.monocell.add_box, "INVOKE_DEFAULT")
-    yield PAUSE
-    yield from framed(job["zoom_at"], 2.2)
-    for pixel in job["box"][:3]:
-        yield from click(pixel)
-    move(job["box"][3])
+def carton_drawn():
+    """A box by its corners."""
+    yield from begun(bpy.ops.monocell.add_box, job["carton"]["base"][1])
+    first, *others = job["carton"]["base"]
+    # Ctrl: in the carton's own shadow another corner is near
+    yield from click(first, ctrl=True)
+    yield from clicked(others)
+    move(job["carton"]["top"])
     yield from shot("box")
-    yield from click(job["box"][3])
-    in_view(bpy.ops.monocell.add_cylinder, "INVOKE_DEFAULT")
+    yield from click(job["carton"]["top"])
+    yield from ended("carton")
+
+
+def can_put_on_it():
+    """A face as the next reference, and a cylinder on it."""
+    in_view(bpy.ops.monocell.pick_reference, "INVOKE_DEFAULT")
     yield PAUSE
+    move(job["carton_top"])
+    yield from shot("face")
+    yield from click(job["carton_top"])
+    found["active"] = stored().references[stored().reference_index].name
+    yield from begun(bpy.ops.monocell.add_cylinder, job["can"]["rim"][1])
     # a rim has no corners to snap to
-    for pixel in job["cylinder"]:
-        yield from click(pixel, ctrl=True)
-    # where the loupe leaves the drum to be seen
-    move(job["aside"])
-    yield from typed(("ONE", "FIVE", "ZERO"), job["aside"])
+    yield from clicked(job["can"]["rim"], ctrl=True)
+    yield from click(job["can"]["top"][0], shift=True, ctrl=True)
+    move(job["can"]["top"][1])
     yield from shot("cylinder")
-    yield from typed(("RET",), job["aside"])
-    found["left_over"] = handlers()
+    yield from click(job["can"]["top"][1], ctrl=True)
+    yield from ended("can")
+    stored().reference_index = 0
+
+
+def block_drawn():
+    """A box with a typed height."""
+    yield from begun(bpy.ops.monocell.add_box, job["block"]["base"][1])
+    yield from clicked(job["block"]["base"])
+    move(job["block"]["top"])
+    yield from typed(("SIX", "ZERO"), job["block"]["top"])
+    yield from shot("typed")
+    yield from typed(("RET",), job["block"]["top"])
+    yield from ended("block")
     in_view(bpy.ops.monocell.look_through)
-    yield from settle()
+    yield from made_active("carton")
+    yield from scrolled("WHEELDOWNMOUSE")
+    yield from shot("drawn")
     save("drawn")
 
 
-def all_solved():
-    """The picks that the sample brings, and a face as the next reference."""
-    in_view(bpy.ops.monocell.solve_again, "EXEC_DEFAULT", True)
-    yield from worked()
-    for twin in ("crate", "drum"):
-        yield from made_active(twin)
-        in_view(bpy.ops.object.delete, "EXEC_DEFAULT", True)
-    yield from made_active("box")
-    yield from scrolled("WHEELDOWNMOUSE")
-    yield from shot("solved")
-    save("solved")
-    in_view(bpy.ops.monocell.pick_reference, "INVOKE_DEFAULT")
-    yield PAUSE
-    move(job["face"])
-    yield from shot("face")
-    yield from click(job["face"])
-    found["active"] = stored().references[stored().reference_index].name
-    yield from shot("on_face")
-    stored().reference_index = 0
-    yield from scrolled("WHEELUPMOUSE")
-
-
-def aligned_and_used():
-    """Onto the edges, textures, from the side, export."""
+def all_aligned():
+    """Onto the edges: what would move is looked at, and taken."""
+    yield from framed(job["carton_top"], CLOSER)
     in_view(bpy.ops.monocell.align, "INVOKE_DEFAULT", everything=True)
+    yield from reviewed()
+    move(job["carton"]["top"])
+    yield from shot("review")
+    yield from typed(("RET",), job["carton_top"])
     yield from worked()
-    yield from made_active("box")
-    yield from scrolled("WHEELDOWNMOUSE")
+    in_view(bpy.ops.monocell.look_through)
+    yield from made_active("carton")
     yield from shot("aligned")
     save("aligned")
-    # textures are files beside it
+
+
+def seen_from_the_side():
+    """Textures beside the saved file, and a walk round the cell."""
     bpy.ops.wm.save_as_mainfile(filepath=str(out / "cell.blend"))
     in_view(bpy.ops.monocell.take_textures, "INVOKE_DEFAULT", everything=True)
     yield from worked()
     space = view()[1].spaces.active
     space.shading.type = "MATERIAL"
     space.region_3d.view_perspective = "PERSP"
-    in_view(bpy.ops.view3d.view_orbit, angle=0.5, type="ORBITLEFT")
+    in_view(bpy.ops.view3d.view_orbit, angle=ASIDE, type="ORBITLEFT")
     for thing in bpy.context.scene.objects:
         thing.select_set(thing.type == "MESH")
     in_view(bpy.ops.view3d.view_selected)
     in_view(bpy.ops.object.select_all, action="DESELECT")
     yield 3.0
     yield from shot("side")
+
+
+def exported():
+    """For the robot's planner."""
     in_view(bpy.ops.monocell.export_gltf, "EXEC_DEFAULT", filepath=str(out / "environment.glb"))
     yield from worked()
     save("used")
+
+
+def begun(verb, pixel):
+    """A verb of picking begun, the view close to where the picks will be."""
+    in_view(bpy.ops.monocell.look_through)
+    yield from framed(pixel, CLOSER)
+    in_view(verb, "INVOKE_DEFAULT")
+    yield PAUSE
+
+
+def ended(name):
+    """The picking is over; the new object gets its name."""
+    yield from settle()
+    found["left_over"] = found.get("left_over", False) or handlers()
+    yield from renamed(name)
 
 
 run(steps)

@@ -29,7 +29,7 @@ VERBS = {
     "propose": "boxes and cylinders that may stand on a plane, for you to accept",
     "map": "pixels to points of a reference plane or line, with their errors",
     "appearance": "colours and textures of the objects, from the picture",
-    "export": "the virtual environment as glTF",
+    "export": "the virtual environment as glTF, USD, URDF, SDF, MJCF, OBJ and more",
     "compare": "errors of pose and of every object against the truth",
     "robot": "the robot scene in PyBullet: collision check, path planning, picture",
 }

@@ -20,7 +20,7 @@ from ..core.cell import Cell
 from ..core.document.camera_file import read_camera
 from ..core.document.cell_file import read_cell
 from ..core.errors import InvalidValue, SphereNotFound
-from ..core.picture.pictures import Picture, read_picture
+from ..core.picture.pictures import Picture, read_picture, read_picture_told
 from ..core.sighting import SphereSighting
 
 # how far a ball may be from where an approximate pose puts it, when nobody says
@@ -39,6 +39,7 @@ class Job:
     sighting: SphereSighting
     hints: FindHints
     prediction: Prediction | None
+    told: tuple[str, ...] = ()
 
     @staticmethod
     def of(args: argparse.Namespace) -> Job:
@@ -56,12 +57,14 @@ class Job:
             place = _place(args, cell)
             prediction = predicted(cell.camera, place, asked.radius, _within(args))
             asked = replace(asked, window=prediction.window)
-        picture = read_picture(args.picture, camera.intrinsics, linear=args.linear)
-        return Job(picture, camera, asked, _hints(args, camera, prediction), prediction)
+        picture, told = read_picture_told(args.picture, camera.intrinsics, linear=args.linear)
+        return Job(picture, camera, asked, _hints(args, camera, prediction), prediction, told)
 
     def doubts(self, ball: SphereOutline) -> tuple[str, ...]:
-        """What the prediction has against a ball."""
-        return () if self.prediction is None else self.prediction.doubts(ball.centre_camera)
+        """What the prediction has against a ball, and a tag against the picture."""
+        if self.prediction is None:
+            return self.told
+        return (*self.told, *self.prediction.doubts(ball.centre_camera))
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,7 +154,10 @@ def find_in_cell(args: argparse.Namespace) -> tuple[Seen, ...]:
 
 
 def _seen(args: argparse.Namespace, cell: Cell, camera: Camera, sighting: SphereSighting) -> Seen:
-    picture = read_picture(cell.path_of(sighting.picture), camera.intrinsics, linear=args.linear)
+    path = cell.path_of(sighting.picture)
+    picture, told = read_picture_told(path, camera.intrinsics, linear=args.linear)
+    # the sighting is named where they are told
+    told = tuple(words.removeprefix(f"{path.name}: ") for words in told)
     try:
         prediction = None
         if cell.camera.camera_from_world is not None:
@@ -166,8 +172,8 @@ def _seen(args: argparse.Namespace, cell: Cell, camera: Camera, sighting: Sphere
     except SphereNotFound as error:
         return Seen(sighting, None, (str(error),))
     if prediction is None:
-        return Seen(sighting, ball, ball.warnings)
-    doubts = (*ball.warnings, *prediction.doubts(ball.centre_camera))
+        return Seen(sighting, ball, (*told, *ball.warnings))
+    doubts = (*told, *ball.warnings, *prediction.doubts(ball.centre_camera))
     return Seen(sighting, ball, doubts, prediction.aside(ball.centre_camera))
 
 

@@ -29,7 +29,6 @@ VERBS = (
     "add_box",
     "add_cylinder",
     "add_cone",
-    "add_frustum",
     "add_tube",
     "add_sphere",
     "add_prism",

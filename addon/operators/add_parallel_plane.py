@@ -4,8 +4,9 @@
 from typing import ClassVar
 
 import bpy
-from bpy.props import FloatProperty, StringProperty
+from bpy.props import StringProperty
 
+from ..fields import length_property, new_name_property
 from ..polls import NeedsPose
 from ..reference_adding import add_reference
 from ..refusals import refuses
@@ -23,16 +24,10 @@ class AddParallelPlane(NeedsPose, bpy.types.Operator):
         description="A plane, or a face as crate.top; empty: the active reference",
         options={"SKIP_SAVE"},
     )
-    distance: FloatProperty(
-        name="Distance",
-        description="Along the plane's normal, metres; below zero on its other side",
-        default=0.1,
-        unit="LENGTH",
-        precision=4,
+    distance: length_property(
+        "Distance", "Along the plane's normal, metres; below zero on its other side", default=0.1
     )
-    name: StringProperty(
-        name="Name", description="Empty: the first free one", options={"SKIP_SAVE"}
-    )
+    name: new_name_property("reference")
 
     def invoke(self, context, event):
         """Ask for the distance."""

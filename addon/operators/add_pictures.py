@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import ClassVar
 
 import bpy
-from bpy.props import CollectionProperty, EnumProperty, StringProperty
+from bpy.props import StringProperty
 
+from ..fields import files_property, folder_property, shows_property, unit_property
 from ..place_inputs import decimals
 from ..polls import NeedsCell
 from ..refusals import refuses
@@ -20,32 +21,33 @@ class AddPictures(NeedsCell, bpy.types.Operator):
     bl_label = "Add Pictures with Positions"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
-    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"SKIP_SAVE"})
-    filter_image: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
-    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    directory: folder_property()
+    files: files_property()
+    filter_image: shows_property("pictures")
+    filter_folder: shows_property("folders")
     positions: StringProperty(
         name="Positions",
         description="A position a picture: x y z, parted by semicolons here; CSV and JSON too. "
         "Filled with what was copied",
         options={"SKIP_SAVE"},
     )
-    unit: EnumProperty(
-        name="Unit",
-        description="Unit of the positions where they name none",
-        items=(("m", "m", "Metres"), ("mm", "mm", "Millimetres"), ("cm", "cm", "Centimetres")),
-    )
+    unit: unit_property()
 
     def invoke(self, context, event):
-        """Take what was copied, then let pictures be chosen."""
+        """Take what was copied, then let pictures be chosen that were not dropped."""
         self.positions = context.window_manager.clipboard
         self.unit = context.scene.monocell_inputs.position_unit
+        if self.files:
+            return context.window_manager.invoke_props_dialog(self, width=420)
         self.directory = context.scene.monocell_cell.folder + "/"
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def draw(self, context):
         """Blender's call."""
+        if len(self.files):
+            told = "1 picture" if len(self.files) == 1 else f"{len(self.files)} pictures"
+            self.layout.label(text=told, icon="IMAGE_DATA")
         self.layout.prop(self, "positions")
         self.layout.prop(self, "unit", expand=True)
         self.layout.prop(context.scene.monocell_inputs, "ball_radius")

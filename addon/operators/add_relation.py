@@ -6,6 +6,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
+from ..fields import object_property
 from ..model_changes import change_model, name_of, paths_for
 from ..polls import NeedsPose
 from ..refusals import refuses
@@ -48,7 +49,7 @@ class AddRelation(NeedsPose, bpy.types.Operator):
     bl_label = "Add Relation"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    name: StringProperty(name="Object", description="Empty: the active one", options={"SKIP_SAVE"})
+    name: object_property()
     kind: EnumProperty(name="Relation", description="How it is held", items=KINDS)
     to: StringProperty(
         name="To",

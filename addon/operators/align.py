@@ -4,10 +4,10 @@
 from typing import ClassVar
 
 import bpy
-from bpy.props import BoolProperty, StringProperty
 
 from ..background_job import WorksInBackground
 from ..document import read_scene, show_objects, stored_report, write_scene
+from ..fields import everything_property, object_property
 from ..polls import NeedsPose
 from ..preferences import settings
 from ..reviewing import Reviewed
@@ -20,14 +20,8 @@ class Align(Reviewed, WorksInBackground, NeedsPose, bpy.types.Operator):
     bl_label = "Align on Edges"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    name: StringProperty(
-        name="Object",
-        description="The object to refine; empty: the active one",
-        options={"SKIP_SAVE"},
-    )
-    everything: BoolProperty(
-        name="All", description="All objects, not one alone", options={"SKIP_SAVE"}
-    )
+    name: object_property()
+    everything: everything_property()
 
     def prepare(self, context):
         """What is done in the background."""

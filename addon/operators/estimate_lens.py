@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import ClassVar
 
 import bpy
-from bpy.props import CollectionProperty, StringProperty
 
 from ..background_job import WorksInBackground
+from ..fields import files_property, folder_property, shows_property
 
 
 class EstimateLens(WorksInBackground, bpy.types.Operator):
@@ -17,37 +17,20 @@ class EstimateLens(WorksInBackground, bpy.types.Operator):
     bl_label = "Estimate Lens"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    directory: StringProperty(
-        name="Folder",
-        description="Where the pictures are; with none chosen, all in it are taken",
-        subtype="DIR_PATH",
-        options={"HIDDEN", "SKIP_SAVE"},
-    )
-    files: CollectionProperty(
-        name="Pictures",
-        description="Names of the pictures in the folder",
-        type=bpy.types.OperatorFileListElement,
-        options={"SKIP_SAVE"},
-    )
-    filter_image: bpy.props.BoolProperty(
-        name="Pictures only",
-        description="Show pictures in the file browser",
-        default=True,
-        options={"HIDDEN"},
-    )
-    filter_folder: bpy.props.BoolProperty(
-        name="Folders too",
-        description="Show folders in the file browser",
-        default=True,
-        options={"HIDDEN"},
-    )
+    directory: folder_property()
+    files: files_property()
+    filter_image: shows_property("pictures")
+    filter_folder: shows_property("folders")
 
     def invoke(self, context, event):
-        """Let the pictures be chosen."""
-        # Blender's file browser calls execute, and that must not freeze the window
+        """Let the pictures be chosen that were not dropped; the board is asked for beside them."""
+        # Blender's file browser and dialog call execute, and that must not freeze the window
         self._chosen_by_hand = True
-        folder = context.scene.monocell_inputs.picture or context.scene.monocell_cell.folder
-        self.directory = self.directory or str(Path(bpy.path.abspath(folder or "//")))
+        if self.files:
+            return context.window_manager.invoke_props_dialog(self)
+        picture, cell = context.scene.monocell_inputs.picture, context.scene.monocell_cell.folder
+        folder = Path(bpy.path.abspath(picture)).parent if picture else cell or Path.home()
+        self.directory = self.directory or f"{folder}/"
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 

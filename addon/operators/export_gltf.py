@@ -1,44 +1,106 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Export the scene's cell as one binary glTF file."""
+"""Export the scene's cell as glTF, or in any other format."""
 
+from pathlib import Path
 from typing import ClassVar
 
 import bpy
-from bpy.props import StringProperty
+from bpy.props import EnumProperty
 from bpy_extras.io_utils import ExportHelper
 
+from ...core.formats.endings import FORMATS, known_ending
 from ..cell_scene import title_of
 from ..document import doubts_of, read_scene
+from ..fields import endings_property
 from ..polls import NeedsCell
 from ..refusals import refuses
 
 
+def format_of(ending):
+    """The identifier of a format by its ending."""
+    return ending[1:].upper()
+
+
+def _show_files_of(operator, context):
+    """The chosen format's files in the browser, and its ending on the name."""
+    # a menu's entry has the properties alone
+    ending = "." + operator.format.lower()
+    operator.filter_glob = "*" + ending
+    browser = context.space_data
+    if browser is None or browser.type != "FILE_BROWSER" or browser.params is None:
+        return
+    name = Path(browser.params.filename)
+    if name.suffix.lower() in FORMATS:
+        browser.params.filename = str(name.with_suffix(ending))
+    browser.params.filter_glob = operator.filter_glob
+
+
 class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):
-    """Export all objects, hidden ones too, and the camera as a glTF file with exact sizes"""
+    """Export all objects, hidden ones too, and the camera, in the format that is chosen"""
 
     bl_idname = "monocell.export_gltf"
-    bl_label = "Export Cell as glTF"
+    bl_label = "Export Cell"
     bl_options: ClassVar = {"REGISTER"}
 
-    filename_ext = ".glb"
-    filter_glob: StringProperty(default="*.glb", options={"HIDDEN"})
+    format: EnumProperty(
+        name="Format",
+        description="What to write; the ending of the file's name follows",
+        items=[
+            (format_of(ending), f"{format_of(ending)} ({ending})", told)
+            for ending, told in FORMATS.items()
+        ],
+        default="GLB",
+        update=_show_files_of,
+    )
+    filter_glob: endings_property("*.glb")
+
+    @property
+    def filename_ext(self):
+        """The ending of the chosen format, which Blender gives the file's name."""
+        return "." + self.format.lower()
+
+    @classmethod
+    def description(cls, context, properties):
+        """Blender's call for the tooltip: that of the format."""
+        told = FORMATS["." + properties.format.lower()]
+        return f"Export objects and camera: {told}"
 
     def invoke(self, context, event):
         """Offer a name beside the document."""
         stored = context.scene.monocell_cell
         folder = bpy.path.abspath("//") or stored.folder + "/"
-        self.filepath = folder + title_of(stored.path or context.scene.name) + ".glb"
+        name = title_of(stored.path or context.scene.name)
+        self.filepath = folder + name + self.filename_ext
+        _show_files_of(self, context)
         return super().invoke(context, event)
+
+    def draw(self, context):
+        """Blender's call: what stands beside the files."""
+        layout = self.layout
+        layout.prop(self, "format")
+        for line in _lines(FORMATS[self.filename_ext]):
+            layout.label(text=line)
 
     @refuses
     def execute(self, context):
-        """Write it whole or not at all."""
-        from ...scene.gltf import export_gltf
+        """Write it whole or not at all; the ending of the name tells the format."""
+        from ...scene.export import export_cell
 
         path = bpy.path.abspath(self.filepath)
+        self.format = format_of(known_ending(path))
         cell = read_scene(context.scene)
-        export_gltf(cell, path)
-        self.report({"INFO"}, f"{path}: {len(cell.objects)} objects exported")
-        for doubt in doubts_of(context.scene):
-            self.report({"WARNING"}, doubt)
+        warnings = (*export_cell(cell, path), *doubts_of(context.scene))
+        for warning in warnings:
+            self.report({"WARNING"}, warning)
+        open_ones = [sketch.name for sketch in cell.sketches]
+        if open_ones:
+            self.report({"WARNING"}, f"{', '.join(open_ones)}: not solved yet, so not in the file")
+        self.report({"INFO"}, f"{Path(path)}: {len(cell.objects)} objects exported")
         return {"FINISHED"}
+
+
+def _lines(told):
+    """The description in rows that fit beside the files."""
+    import textwrap
+
+    return textwrap.wrap(told, 34)

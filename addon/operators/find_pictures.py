@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import ClassVar
 
 import bpy
-from bpy.props import StringProperty
 
+from ..fields import folder_property, shows_property
 from ..polls import NeedsCell
 from ..refusals import refuses
 from ..sightings import rename_pictures
@@ -19,8 +19,8 @@ class FindPictures(NeedsCell, bpy.types.Operator):
     bl_label = "Find Moved Pictures"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    directory: StringProperty(name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"})
-    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    directory: folder_property()
+    filter_folder: shows_property("folders")
 
     def invoke(self, context, event):
         """Let a folder be chosen."""

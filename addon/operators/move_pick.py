@@ -7,6 +7,7 @@ import bpy
 from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
 from ..camera_view import camera_region, view_of
+from ..fields import object_property
 from ..model_changes import active_object, change_model, name_of
 from ..on_picture import OnPicture
 from ..picture_frame import picture_frame
@@ -26,9 +27,15 @@ class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
     bl_label = "Move Pick"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    name: StringProperty(name="Object", description="Empty: the active one", options={"SKIP_SAVE"})
-    role: StringProperty(name="Role", description="base, top, rim, ...", options={"SKIP_SAVE"})
-    index: IntProperty(name="Number", description="From 0", min=0, options={"SKIP_SAVE"})
+    name: object_property()
+    role: StringProperty(
+        name="Role",
+        description="What it was picked for, as base, top or rim",
+        options={"SKIP_SAVE"},
+    )
+    index: IntProperty(
+        name="Number", description="Which pick of that role, from 0", min=0, options={"SKIP_SAVE"}
+    )
     pixel_at: FloatVectorProperty(
         name="Pixel",
         description="Where it is now, a pixel of the picture as it came",

@@ -8,6 +8,7 @@ from bpy.props import StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..cell_scene import look_through, open_scene, title_of
+from ..fields import endings_property
 from ..refusals import refuses
 
 
@@ -19,9 +20,14 @@ class OpenCell(bpy.types.Operator, ImportHelper):
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
     filename_ext = ".json"
-    filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
+    filter_glob: endings_property("*.json")
     # not remembered: a path that is there was dropped
-    filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE", "HIDDEN"})
+    filepath: StringProperty(
+        name="File",
+        description="The cell document to open",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
 
     def invoke(self, context, event):
         """Open what was dropped at once; else let a file be chosen."""

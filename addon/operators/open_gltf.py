@@ -4,10 +4,10 @@
 from typing import ClassVar
 
 import bpy
-from bpy.props import StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..cell_scene import look_through, open_scene
+from ..fields import endings_property
 from ..refusals import refuses
 
 
@@ -19,7 +19,7 @@ class OpenGltf(bpy.types.Operator, ImportHelper):
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
     filename_ext = ".glb"
-    filter_glob: StringProperty(default="*.glb", options={"HIDDEN"})
+    filter_glob: endings_property("*.glb")
 
     @refuses
     def execute(self, context):

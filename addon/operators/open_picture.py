@@ -19,7 +19,12 @@ class OpenPicture(bpy.types.Operator):
     bl_label = "Open Picture"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    picture: StringProperty(name="Picture", subtype="FILE_PATH", options={"SKIP_SAVE"})
+    picture: StringProperty(
+        name="Picture",
+        description="The picture of the cell, as it came from the camera",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
+    )
     camera: StringProperty(
         name="Camera file",
         description="Empty: the camera that is stated in the panel",

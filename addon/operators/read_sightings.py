@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import ClassVar
 
 import bpy
-from bpy.props import StringProperty
 from bpy_extras.io_utils import ImportHelper
 
+from ..fields import endings_property
 from ..place_inputs import decimals
 from ..polls import NeedsCell
 from ..refusals import refuses
@@ -21,7 +21,7 @@ class ReadSightings(NeedsCell, bpy.types.Operator, ImportHelper):
     bl_label = "Read Sightings"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    filter_glob: StringProperty(default="*.csv;*.txt;*.tsv;*.json", options={"HIDDEN"})
+    filter_glob: endings_property("*.csv;*.txt;*.tsv;*.json")
 
     @refuses
     def execute(self, context):

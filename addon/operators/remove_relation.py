@@ -4,8 +4,9 @@
 from typing import ClassVar
 
 import bpy
-from bpy.props import IntProperty, StringProperty
+from bpy.props import IntProperty
 
+from ..fields import object_property
 from ..model_changes import change_model, name_of
 from ..polls import NeedsPose
 from ..refusals import refuses
@@ -18,7 +19,7 @@ class RemoveRelation(NeedsPose, bpy.types.Operator):
     bl_label = "Remove Relation"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    name: StringProperty(name="Object", description="Empty: the active one", options={"SKIP_SAVE"})
+    name: object_property()
     index: IntProperty(
         name="Number",
         description="Which of its relations, from 0; -1 for what it stands on",

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import ClassVar
 
 import bpy
-from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ..document import doubts_of
+from ..fields import endings_property
 from ..polls import NeedsCell
 from ..refusals import refuses
 
@@ -21,7 +21,7 @@ class SaveCell(NeedsCell, bpy.types.Operator, ExportHelper):
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
     filename_ext = ".json"
-    filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
+    filter_glob: endings_property("*.json")
 
     def invoke(self, context, event):
         """Offer the name that it was opened from or last saved by."""

@@ -6,6 +6,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 
+from ..fields import object_property, place_property
 from ..model_changes import active_object, change_model, name_of
 from ..polls import NeedsCell
 from ..refusals import refuses
@@ -26,7 +27,7 @@ class SetMotion(NeedsCell, bpy.types.Operator):
     bl_label = "Motion"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    name: StringProperty(name="Object", description="Empty: the active one", options={"SKIP_SAVE"})
+    name: object_property()
     kind: EnumProperty(
         name="Motion",
         description="How it may move",
@@ -51,13 +52,11 @@ class SetMotion(NeedsCell, bpy.types.Operator):
         ),
     )
     axis: FloatVectorProperty(
-        name="Axis", description="Of the joint, in the object's own frame", default=(0, 0, 1)
+        name="Axis",
+        description="Direction of the joint, in the object's own frame, without a unit",
+        default=(0, 0, 1),
     )
-    point: FloatVectorProperty(
-        name="Point",
-        description="That the axis goes through, in the object's own frame, metres",
-        unit="LENGTH",
-    )
+    point: place_property("Point", "That the axis goes through, in the object's own frame, metres")
     limited: BoolProperty(name="Limits", description="Whether the joint has ends")
     lower: FloatProperty(name="Lower", description="Least position, radians or metres", max=0.0)
     upper: FloatProperty(name="Upper", description="Greatest position, radians or metres", min=0.0)

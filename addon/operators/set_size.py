@@ -4,8 +4,9 @@
 from typing import ClassVar
 
 import bpy
-from bpy.props import BoolProperty, FloatProperty, StringProperty
+from bpy.props import BoolProperty, StringProperty
 
+from ..fields import length_property, object_property
 from ..model_changes import change_model, name_of
 from ..polls import NeedsPose
 from ..refusals import refuses
@@ -18,15 +19,15 @@ class SetSize(NeedsPose, bpy.types.Operator):
     bl_label = "Set Size"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    name: StringProperty(name="Object", description="Empty: the active one", options={"SKIP_SAVE"})
-    size: StringProperty(name="Size", description="size_x, radius, height, ...")
+    name: object_property()
+    size: StringProperty(name="Size", description="Which size, as size_x, radius or height")
     known: BoolProperty(
         name="Known",
         description="Whether the size was measured and is held; otherwise the picks tell it",
         default=True,
         options={"SKIP_SAVE"},
     )
-    metres: FloatProperty(name="Value", description="The size, metres", unit="LENGTH", precision=4)
+    metres: length_property("Value", "The size, metres")
 
     @refuses
     def execute(self, context):

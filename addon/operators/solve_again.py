@@ -35,19 +35,22 @@ class SolveAgain(WorksInBackground, NeedsPose, bpy.types.Operator):
 
         cell, joint = read_scene(context.scene), self.joint
         sigma = context.scene.monocell_inputs.pick_sigma_pixels
-        self._before = _entries(cell)
         return (
             "Solving",
             len(cell.things),
             lambda watch: model(cell, sigma, joint=joint, watch=watch),
         )
 
+    def state_of(self, scene):
+        """Objects that were moved meanwhile must not go back unasked."""
+        from ...core.document.entries import object_entry
+
+        entries = [object_entry(thing) for thing in read_scene(scene).objects]
+        return (*super().state_of(scene), entries)
+
     def finish(self, context, done):
         """Rebuild what changed."""
         scene = context.scene
-        if _entries(read_scene(scene)) != self._before:
-            self.report({"ERROR"}, "An object was changed meanwhile: solve again with it as it is")
-            return {"CANCELLED"}
         write_scene(scene, done.cell, stored_report(scene))
         told = [*done.warnings, *show_objects(scene, done.cell)]
         scene.monocell_cell.outdated = ""
@@ -55,9 +58,3 @@ class SolveAgain(WorksInBackground, NeedsPose, bpy.types.Operator):
         for warning in (*told, *(w for result in done.results for w in result.warnings)):
             self.report({"WARNING"}, warning)
         return {"FINISHED"}
-
-
-def _entries(cell):
-    from ...core.document.entries import object_entry
-
-    return [object_entry(thing) for thing in cell.objects]

@@ -6,6 +6,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
+from ..fields import object_property
 from ..model_changes import change_model, name_of
 from ..polls import NeedsPose
 from ..refusals import refuses
@@ -18,7 +19,7 @@ class StandOn(NeedsPose, bpy.types.Operator):
     bl_label = "Stand on Active Reference"
     bl_options: ClassVar = {"REGISTER", "UNDO"}
 
-    name: StringProperty(name="Object", description="Empty: the active one", options={"SKIP_SAVE"})
+    name: object_property()
     on: StringProperty(
         name="On",
         description="A reference, or a face as crate.top; empty: the active reference",

@@ -4,8 +4,8 @@
 from typing import ClassVar
 
 import bpy
-from bpy.props import BoolProperty
 
+from ..fields import everything_property
 from ..looks_taken import TakesLooks
 
 
@@ -17,6 +17,4 @@ class TakeColors(TakesLooks, bpy.types.Operator):
     bl_options: ClassVar = {"REGISTER", "UNDO"}
     textured = False
 
-    everything: BoolProperty(
-        name="All", description="All objects, not the active one alone", options={"SKIP_SAVE"}
-    )
+    everything: everything_property()

@@ -52,6 +52,7 @@ def calibrate_cell(
     shelf = PictureShelf(used, watch)
     shelf.check_there([s.picture for s in used.sightings if isinstance(s, SphereSighting)])
     calibration = _calibrated(used, problem, shelf)
+    calibration = replace(calibration, warnings=(*calibration.warnings, *shelf.told))
     return _with_result(cell, calibration), calibration
 
 

@@ -45,11 +45,14 @@ def sdf(cell: Cell, name: str, folder: str) -> Written:
     files: dict[str, str] = {}
     for group in _models(links):
         model = child(world, "model", name=group[0].name)
+        # a model stands where its first link does: PyBullet takes no other place from a file
+        world_from_model = group[0].world_from_link
+        _add_pose(model, world_from_model)
         if group[0].joint == STILL:
             child(model, "static", "true")
         for link in group:
             comment(model, errors_of(link.thing))
-            files |= _add_link(model, link, folder)
+            files |= _add_link(model, link, world_from_model, folder)
         for link in group:
             _add_joint(model, links, link)
     if cell.camera.camera_from_world is not None:
@@ -68,9 +71,9 @@ def _models(links: Sequence[Link]) -> list[list[Link]]:
     return list(groups.values())
 
 
-def _add_link(model: ET.Element, link: Link, folder: str) -> dict[str, str]:
+def _add_link(model: ET.Element, link: Link, world_from_model: Pose, folder: str) -> dict[str, str]:
     element = child(model, "link", name=link.name)
-    _add_pose(element, link.world_from_link)
+    _add_pose(element, world_from_model.inverse() @ link.world_from_link)
     if link.joint != STILL:
         inertial = child(element, "inertial")
         _add_pose(inertial, Pose(np.eye(3), link.centre_of_mass))

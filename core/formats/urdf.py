@@ -34,6 +34,8 @@ def urdf(cell: Cell, name: str, folder: str) -> Written:
     links, told = links_of(cell)
     root = ET.Element("robot", name=name)
     comment(root, "made by monocell: metres, radians, z up; the link world is the robot's base")
+    # MuJoCo would look for meshes without their folder; others pass over this element
+    child(child(root, "mujoco"), "compiler", strippath="false")
     child(root, "link", name=WORLD)
     files: dict[str, str] = {}
     for link in links:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..errors import PictureError
 from ..intrinsics import Intrinsics
+from .orientation import AS_STORED, SWAPPING, TURNS, orientation_of, upright
 
 # some programs append data of their own after a PNG's end
 LONGEST_TRAILER = 1 << 16
@@ -23,32 +24,37 @@ Light = NDArray[np.float32]
 def read_picture(
     path: str | Path, intrinsics: Intrinsics | None = None, *, linear: bool = False
 ) -> Picture:
-    """Read a picture as (H, W, 3) blue, green, red, 8 or 16 bits, exactly as it is stored.
+    """Read a picture as (H, W, 3) blue, green, red, 8 or 16 bits, its values exactly as stored.
 
     `linear` tells that the file holds amounts of light, as raw ones do: it is then encoded as all
-    others are, at 16 bits. A phone's rotation tag is ignored: intrinsics belong to the pixels as
-    the sensor gave them.
+    others are, at 16 bits. Intrinsics belong to the pixels as the sensor gave them, and a phone's
+    rotation tag is ignored, unless it alone makes the picture as wide and high as they state.
 
     Raises PictureError when the file is missing, truncated, no picture, or not of the size that
     `intrinsics` state.
     """
+    return read_picture_told(path, intrinsics, linear=linear)[0]
+
+
+def read_picture_told(
+    path: str | Path, intrinsics: Intrinsics | None = None, *, linear: bool = False
+) -> tuple[Picture, tuple[str, ...]]:
+    """The same, and words on a rotation tag that was followed, or that leaves a doubt."""
     file = Path(path)
-    try:
-        data = np.fromfile(file, dtype=np.uint8)
-    except FileNotFoundError:
-        raise PictureError(f"{file}: there is no such picture") from None
-    except OSError as error:
-        raise PictureError(f"{file}: can't be read ({error.strerror})") from None
-    if _truncated(data):
-        raise PictureError(f"{file}: the picture breaks off after {len(data)} bytes; copy it again")
+    data = _content(file)
     flags = cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH | cv2.IMREAD_IGNORE_ORIENTATION
     picture = cv2.imdecode(data, flags) if len(data) else None
     if picture is None or picture.dtype not in (np.uint8, np.uint16):
         raise PictureError(f"{file}: {len(data)} bytes that are no picture OpenCV can read")
-    pixels: Picture = np.asarray(picture)
-    if intrinsics is not None:
-        check_size(pixels, intrinsics, str(file))
-    return encoded_light(pixels) if linear else pixels
+    pixels, told = _as_stated(file, np.asarray(picture), orientation_of(data.tobytes()), intrinsics)
+    return encoded_light(pixels) if linear else pixels, told
+
+
+def upright_size(path: str | Path) -> tuple[int, int]:
+    """Width and height of a picture as viewers show it, its rotation tag followed."""
+    height, width = read_picture(path).shape[:2]
+    swaps = orientation_of(_content(Path(path)).tobytes()) in SWAPPING
+    return (height, width) if swaps else (width, height)
 
 
 def encoded_light(picture: Picture) -> Picture:
@@ -101,6 +107,40 @@ def _decoding(dtype: str) -> Light:
     encoded = np.arange(top + 1) / top
     light = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
     return light.astype(np.float32)
+
+
+def _content(file: Path) -> NDArray[np.uint8]:
+    try:
+        data = np.fromfile(file, dtype=np.uint8)
+    except FileNotFoundError:
+        raise PictureError(f"{file}: there is no such picture") from None
+    except OSError as error:
+        raise PictureError(f"{file}: can't be read ({error.strerror})") from None
+    if _truncated(data):
+        raise PictureError(f"{file}: the picture breaks off after {len(data)} bytes; copy it again")
+    return data
+
+
+def _as_stated(
+    file: Path, stored: Picture, orientation: int, intrinsics: Intrinsics | None
+) -> tuple[Picture, tuple[str, ...]]:
+    """The pixels that the intrinsics are of, as stored or turned."""
+    if intrinsics is None or orientation == AS_STORED:
+        if intrinsics is not None:
+            check_size(stored, intrinsics, str(file))
+        return stored, ()
+    wanted, turn = (intrinsics.height, intrinsics.width), TURNS[orientation]
+    turned = upright(stored, orientation)
+    size = f"{intrinsics.width} x {intrinsics.height} px"
+    if turned.shape[:2] == wanted != stored.shape[:2]:
+        return turned, (f"{file.name}: its EXIF tag {turn}, and so it is used: {size}",)
+    check_size(stored, intrinsics, f"{file} (its EXIF tag {turn})")
+    if turned.shape != stored.shape:
+        return stored, ()
+    return stored, (
+        f"{file.name}: its EXIF tag {turn}, and {size} it is either way; it is used as stored. "
+        "If the camera was calibrated on upright pictures, save it upright without the tag",
+    )
 
 
 def _truncated(data: NDArray[np.uint8]) -> bool:

@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
     """Look at the objects in the picture, tell, write."""
     from ...core.look.looks import looks_of
     from ...core.look.texture_files import with_looks
-    from ...core.picture.pictures import read_picture
+    from ...core.picture.pictures import read_picture_told
 
     if (args.texture or args.texture_all) and args.out is None:
         raise InvalidValue("--texture: textures are files beside a document; name it with --out")
@@ -63,10 +63,12 @@ def run(args: argparse.Namespace) -> int:
     names, textured = args.only, args.texture
     if args.texture_all:
         textured = [thing.name for thing in cell.objects if names is None or thing.name in names]
+    picture, told = read_picture_told(cell.path_of(cell.picture), cell.camera.intrinsics)
+    warn(told)
     looks = list(
         looks_of(
             cell,
-            read_picture(cell.path_of(cell.picture), cell.camera.intrinsics),
+            picture,
             names=names,
             textured=textured,
             hidden=None if args.hidden is None else _mask(args.hidden),

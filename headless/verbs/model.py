@@ -72,12 +72,13 @@ def run(args: argparse.Namespace) -> int:
 def _aligned(cell: Cell, names: list[str]) -> tuple[Cell, Aligned]:
     """The cell with its objects on the picture's edges, and what was found of each."""
     from ...core.align.align_cell import align_cell
-    from ...core.picture.pictures import read_picture
+    from ...core.picture.pictures import read_picture_told
     from ...core.references.resolve import resolve_references
 
     if cell.picture is None:
         raise InvalidValue("--align needs the cell's picture, and the document names none")
-    picture = read_picture(cell.path_of(cell.picture), cell.camera.intrinsics)
+    picture, told = read_picture_told(cell.path_of(cell.picture), cell.camera.intrinsics)
+    warn(told)
     moved, found = align_cell(cell, picture, names or None)
     return resolve_references(moved)[0], found
 

@@ -12,7 +12,7 @@ from ...core.document.cell_file import read_cell, write_cell
 from ...core.document.entries import object_entry
 from ...core.errors import InvalidValue
 from ...core.picture.overlay import draw_overlay
-from ...core.picture.pictures import eight_bits, read_picture
+from ...core.picture.pictures import eight_bits, read_picture_told
 from ...core.reference import ReferencePlane
 from ..cli import DONE
 from ..pictures import write_picture
@@ -42,7 +42,8 @@ def run(args: argparse.Namespace) -> int:
     if args.overlay is not None and args.overlay.resolve() == path.resolve():
         raise InvalidValue(f"{args.overlay}: the overlay would replace the picture; name another")
     camera = cell.standing_camera()
-    picture = read_picture(path, camera.intrinsics)
+    picture, told = read_picture_told(path, camera.intrinsics)
+    warn(told)
     proposals = propose(camera, picture, plane, cell.objects)
     if args.overlay is not None:
         things = [proposal.thing for proposal in proposals]

@@ -50,6 +50,15 @@ class FileMoves:
 
     does_open_picture.often = 2
 
+    def does_change_camera(self):
+        self.press("change_camera")
+
+    def does_estimate_lens(self):
+        files = [{"name": f"ball_{i}.png"} for i in range(int(self.rng.integers(0, 2)))]
+        self.press("estimate_lens", directory=str(self.folder), files=files)
+
+    does_estimate_lens.often = 1
+
     def does_save_and_open_document(self):
         """A document that was saved opens as what it was."""
         before = self.check()
@@ -63,8 +72,12 @@ class FileMoves:
     does_save_and_open_document.often = 3
 
     def does_export_and_open(self):
+        if self.chance(0.3):
+            ending = self.one_of(["STL", "URDF", "MJCF", "PLY", "nothing"])
+            path = self.folder / f"cell.{ending.lower()}"
+            self.press("export_gltf", filepath=str(path))
         path = self.folder / "cell.glb"
-        if self.press("export_gltf", filepath=str(path)) != {"FINISHED"}:
+        if self.press("export_gltf", filepath=str(path), format="GLB") != {"FINISHED"}:
             return
         names = {thing.name for thing in self.cell().objects}
         if self.press("open_gltf", filepath=str(path)) == {"FINISHED"}:

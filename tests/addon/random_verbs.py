@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import bench_cell
-import numpy as np
 from monocell.core.relation import RELATIONS
 
 TEXTS = ("", "a b", "1 2", "{}", "[[1]]", "0.3 0.1 0.2", "x,y,z\n0.3,0.1,0.2\n0.1,0.1,0.2")
 FIELDS = {
-    "camera_source": ("FILE", "PIXELS", "ANGLE"),
+    "camera_source": ("FILE", "PIXELS", "ANGLE", "BOARD"),
     "focal_x": (0.0, 700.0, 1e9),
     "field_degrees": (1.0, 60.0, 170.0),
     "centred": (True, False),
@@ -226,7 +225,9 @@ class VerbMoves:
     does_align.often = 1
 
     def does_propose(self):
-        self.press("propose", on=self.one_of(["", "floor"]), doubtful=self.chance(0.5))
+        # looking for it takes seconds
+        on = self.one_of(["nothing", "nothing", "nothing", ""])
+        self.press("propose", on=on, doubtful=self.chance(0.5))
 
     does_propose.often = 1
 

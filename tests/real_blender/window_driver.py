@@ -22,12 +22,18 @@ PAUSE = 0.25
 drawn = []
 
 
+class NoView(Exception):
+    """No 3D viewport is on the screen, as while a file is chosen."""
+
+
 def view():
     window = bpy.context.window_manager.windows[0]
-    area = max(
-        (a for a in window.screen.areas if a.type == "VIEW_3D"), key=lambda a: a.width * a.height
-    )
-    region = next(r for r in area.regions if r.type == "WINDOW")
+    areas = [area for area in window.screen.areas if area.type == "VIEW_3D"]
+    if not areas:
+        raise NoView
+    area = max(areas, key=lambda area: area.width * area.height)
+    # in a quad view the last one turns freely
+    region = [r for r in area.regions if r.type == "WINDOW"][-1]
     return window, area, region
 
 
@@ -47,8 +53,8 @@ def show_sidebar():
 
 def place_of(pixel):
     """Where an undistorted pixel lies in the window."""
-    _, area, region = view()
-    scene = bpy.context.scene
+    window, area, region = view()
+    scene = window.scene
     camera = scene.camera
     corners = [
         view3d_utils.location_3d_to_region_2d(
@@ -65,7 +71,7 @@ def place_of(pixel):
 
 
 def event(kind, value, x, y, **more):
-    view()[0].event_simulate(type=kind, value=value, x=x, y=y, **more)
+    bpy.context.window_manager.windows[0].event_simulate(type=kind, value=value, x=x, y=y, **more)
 
 
 def press(kind, x=300, y=300, **more):
@@ -154,4 +160,5 @@ def run(steps):
 
     bpy.context.preferences.view.show_splash = False
     bpy.types.SpaceView3D.draw_handler_add(lambda: drawn.append(True), (), "WINDOW", "POST_PIXEL")
-    bpy.app.timers.register(tick, first_interval=2.0)
+    # a file that is loaded on the way does not end it
+    bpy.app.timers.register(tick, first_interval=2.0, persistent=True)

@@ -179,6 +179,21 @@ def test_the_glb_holds_the_files_as_they_are_and_what_was_seen(blender, cell, tm
     assert all(m.get("alphaMode", "OPAQUE") == "OPAQUE" for m in document["materials"])
 
 
+def test_the_glb_names_textures_from_where_it_lies(blender, cell, tmp_path):
+    folder = tmp_path / "elsewhere"
+    folder.mkdir()
+    document, _ = glb_of(cell, folder / "cell.glb")
+    looks = [
+        node["extras"]["monocell"].get("appearance", {})
+        for node in document["nodes"]
+        if "monocell" in node.get("extras", {})
+    ]
+    names = [t["picture"] for look in looks for t in look.get("textures", {}).values()]
+    assert names
+    for name in names:
+        assert (folder / name).is_file(), name
+
+
 def test_the_glb_shows_the_same_when_another_program_opens_it(blender, cell, tmp_path):
     from monocell.scene.rendering import render_linear
     from monocell.scene.textures import shader_of
