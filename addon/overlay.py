@@ -51,12 +51,12 @@ class Overlay:
         (x, y), (right, below) = frame.region_points([[0.0, 0.0], [1.0, 1.0]])
         look = settings(context)
         batches = list(self._grid_batches(scene, look))
+        work = context.window_manager.monocell_work
         # what would change is drawn instead
-        if not context.window_manager.monocell_work.reviewing:
-            batches += self._object_batches(context, scene, look)
-        # sightings would lie over what is picked
-        picking = context.window_manager.monocell_work.picking
-        batches += [] if picking else self._ball_batches(scene, look)
+        batches += [] if work.reviewing else self._object_batches(context, scene, look)
+        # sightings would lie over what is picked or chosen
+        busy = work.picking or work.reviewing
+        batches += [] if busy else self._ball_batches(scene, look)
         scale = context.preferences.system.ui_scale
         with gpu.matrix.push_pop():
             gpu.matrix.translate((x, y))
@@ -65,7 +65,7 @@ class Overlay:
                 batch.draw(scale)
         from .drawing import draw_labels
 
-        labels = [] if picking else self._balls[2]
+        labels = [] if busy else self._balls[2]
         points = frame.region_points([label.pixel for label in labels]) if labels else ()
         draw_labels(
             [(at, one.text, one.color) for at, one in zip(points, labels, strict=True)], scale

@@ -72,7 +72,10 @@ def camera_found():
 def carton_drawn():
     """A box by its corners."""
     yield from begun(bpy.ops.monocell.add_box, job["carton"]["base"][1])
-    yield from clicked(job["carton"]["base"])
+    first, *others = job["carton"]["base"]
+    # Ctrl: in the carton's own shadow another corner is near
+    yield from click(first, ctrl=True)
+    yield from clicked(others)
     move(job["carton"]["top"])
     yield from shot("box")
     yield from click(job["carton"]["top"])
@@ -119,7 +122,7 @@ def all_aligned():
     yield from framed(job["carton_top"], CLOSER)
     in_view(bpy.ops.monocell.align, "INVOKE_DEFAULT", everything=True)
     yield from reviewed()
-    move(job["carton_top"])
+    move(job["carton"]["top"])
     yield from shot("review")
     yield from typed(("RET",), job["carton_top"])
     yield from worked()

@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+from types import SimpleNamespace
+
 import bench_cell
 import cv2
 import numpy as np
@@ -30,6 +32,26 @@ def test_the_sample_opens_with_one_press_and_says_what_comes_next(addon, module)
     assert module("addon.steps").camera_step(scene).said == "8 sightings are ready: calibrate."
     # it is never written back into the extension
     assert scene.monocell_cell.path == ""
+
+
+def test_the_sample_to_model_yourself_is_the_first_and_brings_no_picks(addon, module):
+    addon.ops.monocell.open_sample()
+    stored = addon.context.scene.monocell_cell
+    assert '"objects": []' in stored.text
+    addon.ops.monocell.open_sample(sample="TABLE")
+    sketches = module("addon.document").bare_cell(addon.context.scene).sketches
+    assert len(sketches) == 7
+
+
+def test_each_sample_says_what_is_in_it_before_it_is_opened(addon, module):
+    opened = module("addon.operators.open_sample").OpenSample
+    told = {
+        name: opened.description(addon.context, SimpleNamespace(sample=name))
+        for name in ("STACK", "TABLE")
+    }
+    assert "model yourself" in told["STACK"]
+    assert "Solve All" in told["TABLE"]
+    assert all("40 mm ball" in words for words in told.values())
 
 
 def test_the_steps_follow_the_work(addon, module, bench):

@@ -14,7 +14,7 @@ SAMPLE = Path(__file__).resolve().parents[2] / "samples" / "03_stack"
 ROUND = (0, 1, 3, 2)
 # where a rim is picked: left, front and right, radians from the side that faces the camera
 LEFT_FRONT_RIGHT = (-1.2, 0.0, 1.2)
-TOP_LEFT_RIGHT = (-0.9, 0.9)
+TOP_FRONT_BACK = (0.0, np.pi)
 # how far the carton's free top lies from its middle, metres along its sides
 FREE_TOP = (0.07, 0.03)
 
@@ -50,10 +50,10 @@ class Hand:
         return {"base": picked[:3], "top": picked[3]}
 
     def cylinder(self, name):
-        """Three points of the rim it stands on, and two of the top's on the camera's side."""
+        """Three points of the rim it stands on, and of the top's the nearest and the farthest."""
         thing = self.things[name]
         base = self._ring(thing, LEFT_FRONT_RIGHT, -thing.height / 2)
-        top = self._ring(thing, TOP_LEFT_RIGHT, thing.height / 2)
+        top = self._ring(thing, TOP_FRONT_BACK, thing.height / 2)
         return {
             "rim": self._view(base, self.sigma).tolist(),
             "top": self._view(top, self.sigma).tolist(),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import os
 
 import numpy as np
 import pytest
@@ -67,6 +68,14 @@ def bullet():
         client = p.connect(p.DIRECT)
         yield p
         p.disconnect(client)
+
+
+@pytest.fixture
+def mujoco(monkeypatch):
+    # which it reads once, when it is imported; its own choice needs a display
+    if "MUJOCO_GL" not in os.environ:
+        monkeypatch.setenv("MUJOCO_GL", "egl")
+    return pytest.importorskip("mujoco", reason="no mujoco here: pip install mujoco")
 
 
 def bounds(thing):
@@ -170,8 +179,7 @@ def test_a_hinge_in_bullet_turns_the_lid_about_its_edge(bullet, tmp_path):
 
 
 @pytest.mark.parametrize("ending", [".xml", ".urdf"])
-def test_mujoco_has_every_solid_where_it_stands(ending, tmp_path):
-    mujoco = pytest.importorskip("mujoco")
+def test_mujoco_has_every_solid_where_it_stands(mujoco, ending, tmp_path):
     model, data = loaded(mujoco, tuple(SOLIDS.values()), tmp_path / f"cell{ending}")
     names = [thing.name if thing.name != "Kiste ä" else "Kiste_a" for thing in SOLIDS.values()]
     if ending == ".urdf":
@@ -221,8 +229,7 @@ def corners(model, data, geom):
     return points @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
 
 
-def test_mujoco_moves_what_moves_with_its_mass_and_moments(tmp_path):
-    mujoco = pytest.importorskip("mujoco")
+def test_mujoco_moves_what_moves_with_its_mass_and_moments(mujoco, tmp_path):
     model, data = loaded(mujoco, CHEST, tmp_path / "cell.xml")
     assert model.njnt == 2
     hinge = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, "lid_joint")
@@ -239,8 +246,7 @@ def test_mujoco_moves_what_moves_with_its_mass_and_moments(tmp_path):
     np.testing.assert_allclose(data.geom_xpos[lid], wanted, atol=1e-9)
 
 
-def test_mujoco_renders_the_cell_s_camera_at_its_pixels(tmp_path):
-    mujoco = pytest.importorskip("mujoco")
+def test_mujoco_renders_the_cell_s_camera_at_its_pixels(mujoco, tmp_path):
     ball = Sphere("ball", Pose(np.eye(3), [0.35, 0.1, 0.2]), radius=0.03)
     model, data = loaded(mujoco, (ball,), tmp_path / "cell.xml")
     model.vis.global_.offwidth, model.vis.global_.offheight = 640, 480
