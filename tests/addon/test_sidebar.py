@@ -55,3 +55,13 @@ def test_the_calibration_is_told_in_one_line_in_the_user_s_unit(addon, module, b
     assert told(report(addon.context.scene), "in").endswith(" in on floor")
     addon.ops.monocell.find_all()
     assert "before the search: ± " in told(report(addon.context.scene), "mm")
+
+
+def test_a_lock_of_a_size_that_the_object_has_not_changes_nothing(addon, module, bench, capfd):
+    addon.ops.monocell.open_cell(filepath=str(bench))
+    picks = json.dumps(bench_cell.drum_picks())
+    addon.ops.monocell.add_cylinder("EXEC_DEFAULT", True, picks=picks)
+    addon.context.scene.monocell_object.known_2 = True
+    (drum,) = module("addon.document").read_scene(addon.context.scene).objects
+    assert drum.known == {}
+    assert "Traceback" not in "".join(capfd.readouterr())
