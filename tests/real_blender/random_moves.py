@@ -26,7 +26,7 @@ from window_driver import (
 
 PAUSE = 0.06
 PICKING = (
-    *("box", "cylinder", "cone", "frustum", "tube", "sphere", "prism"),
+    *("box", "cylinder", "cone", "tube", "sphere", "prism"),
     *("upright_plane", "upright_line", "point"),
 )
 OTHER_MODAL = ("pick_reference", "move_pick", "drag_window")
