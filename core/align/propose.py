@@ -62,8 +62,8 @@ def propose(
     """Candidates standing on `plane`, best first; where `things` are already, none is looked for.
 
     They are named `proposal 1`, ... in the order given. `watch` is told each outline in the picture
-    and each part of it that is tried, and may raise to end it. Raises PictureError for a picture of another size,
-    NoPose without a camera pose.
+    and each part of it that is tried, and may raise to end it. Raises PictureError for a picture of
+    another size, NoPose without a camera pose.
     """
     check_size(picture_bgr, camera.intrinsics, "the picture")
     sight = PictureSight.of(picture_bgr)
