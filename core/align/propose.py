@@ -61,20 +61,22 @@ def propose(
 ) -> tuple[Proposal, ...]:
     """Candidates standing on `plane`, best first; where `things` are already, none is looked for.
 
-    They are named `proposal 1`, ... in the order given. `watch` is told each part of the picture
-    that is tried, and may raise to end it. Raises PictureError for a picture of another size,
-    NoPose without a camera pose.
+    They are named `proposal 1`, ... in the order given. `watch` is told each outline in the picture
+    and each part of it that is tried, and may raise to end it. Raises PictureError for a picture of
+    another size, NoPose without a camera pose.
     """
     check_size(picture_bgr, camera.intrinsics, "the picture")
     sight = PictureSight.of(picture_bgr)
     known = [hull_of(Solid.of(thing), camera) for thing in things]
     taken = filled(sight.encoded.shape, [hull for hull in known if hull is not None])
-    covers = [
-        cover
-        for seed in seeds(sight, taken)
-        for kind in PROPOSED
-        if (cover := covering(seed, kind, camera, plane)) is not None
-    ]
+    covers: list[Cover] = []
+    outlines = list(seeds(sight, taken))
+    for i, seed in enumerate(outlines):
+        # a chequered floor has a thousand, and who waits may want to end it
+        if watch is not None:
+            watch(f"outline {i + 1} of {len(outlines)}")
+        every = [covering(seed, kind, camera, plane) for kind in PROPOSED]
+        covers += [cover for cover in every if cover is not None]
     covers.sort(key=lambda cover: cover.promise, reverse=True)
     found: list[Proposal] = []
     tried: list[Picture] = []

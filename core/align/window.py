@@ -14,6 +14,8 @@ from ..picture.pictures import Picture
 # sides are shrunk by whole numbers until the window's area has at most so many pixels
 MOST_PIXELS = 14000
 MOST_ROWS = 30000
+# pixels; whole numbers of OpenCV's drawing end not far beyond
+FARTHEST = 1e5
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +72,13 @@ class Window:
     def mask(self, hull: Array) -> Picture:
         """Ones (rows, columns), uint8, inside the hull of pixels (M, 2) of the picture."""
         filled = np.zeros(self.shape, dtype=np.uint8)
-        corners = cv2.convexHull(self.places(hull).astype(np.float32))[:, 0]
+        places = self.places(hull)
+        places = places[np.isfinite(places).all(axis=-1)]
+        if not len(places):
+            return filled
+        # what lies that far out bounds the window as well as what lies farther
+        near = np.clip(places, -FARTHEST, FARTHEST)
+        corners = cv2.convexHull(near.astype(np.float32))[:, 0]
         cv2.fillConvexPoly(filled, np.round(corners * 16).astype(np.int32), (1,), shift=4)
         return filled
 

@@ -15,7 +15,7 @@ from window_run import in_window
 pytestmark = [pytest.mark.real_blender, pytest.mark.slow]
 
 FIRST, LAST = map(int, os.environ.get("MONOCELL_SEEDS", "1-1").split("-"))
-STEPS = int(os.environ.get("MONOCELL_STEPS", "300"))
+STEPS = int(os.environ.get("MONOCELL_STEPS", "200"))
 
 
 @pytest.fixture(scope="module", params=range(FIRST, LAST + 1))
@@ -34,7 +34,7 @@ def session(request, window_blender, tmp_path_factory):
         "seed": request.param,
         "steps": STEPS,
     }
-    return in_window(window_blender, folder, "random_steps.py", job, timeout=120 + 2 * STEPS)
+    return in_window(window_blender, folder, "random_steps.py", job, timeout=240 + 2 * STEPS)
 
 
 def test_no_step_ends_in_a_traceback(session):
