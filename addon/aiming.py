@@ -42,7 +42,7 @@ class Aiming:
     corners: Array
 
     @staticmethod
-    def of(scene: Any, space: Any) -> Aiming:
+    def of(scene: Any, space: Any = None) -> Aiming:
         """The picture that the scene shows, and the corners of the objects that `space` shows."""
         cell, hidden = bare_cell(scene), hidden_names(scene, space)
         seen = [thing for thing in _objects(scene) if thing.name not in hidden]

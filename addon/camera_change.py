@@ -25,18 +25,20 @@ def change_camera(scene: Any, camera: Camera) -> str:
     Raises InvalidValue for a camera of another size than the cell's pictures, PictureError for a
     picture that can't be read; the scene is then as it was.
     """
-    from ..core.picture.pictures import read_picture
+    from ..core.picture.pictures import read_picture_told
 
     cell, shown = read_scene(scene), scene.monocell_cell.shown_picture
     _refuse_other_size(cell, camera)
     if same_camera(cell.camera, camera):
         return ""
-    picture = read_picture(cell.path_of(shown), camera.intrinsics) if shown else None
+    picture, said = None, ()
+    if shown:
+        picture, said = read_picture_told(cell.path_of(shown), camera.intrinsics)
     posed = cell.camera.camera_from_world is not None
     write_scene(scene, _with_camera(cell, camera))
     put_camera(scene)
     if picture is not None:
-        show_picture(scene, shown, picture)
+        show_picture(scene, shown, picture, said)
     mark_objects(scene, cell)
     inner = camera.intrinsics
     told = f"Focal length {inner.fx:.1f}, {inner.fy:.1f} px"

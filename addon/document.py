@@ -126,8 +126,9 @@ def store_cell(scene: Any, cell: Cell, report: Report | None) -> None:
 def show_objects(scene: Any, cell: Cell, names: Collection[str] | None = None) -> tuple[str, ...]:
     """Build the objects of `cell`, or those of `names`, in place where they are there already.
 
-    Returns a word on every object whose texture is missing, which has its colour alone, and on
-    every one that belongs to another file, which stays as it is there.
+    Returns a word on every object whose texture is missing, which has its colour alone, on
+    every one that belongs to another file, which stays as it is there, and on every one that
+    constraints hold.
     """
     from ..scene.objects import build_object, find_object, library_of
     from ..scene.textures import is_textured, paint
@@ -143,6 +144,8 @@ def show_objects(scene: Any, cell: Cell, names: Collection[str] | None = None) -
             told.append(f"{thing.name}: {STAYS.format(library)}")
             continue
         ob = build_object(thing, collection, scene)
+        if any(not constraint.mute for constraint in ob.constraints):
+            told.append(f"{thing.name}: stands where its constraints put it; mute or remove them")
         if is_textured(thing):
             try:
                 made = paint(ob.data, thing, cell.folder)

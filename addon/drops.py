@@ -3,8 +3,13 @@
 
 import bpy
 
+from .document import has_cell
+from .operators.add_pictures import AddPictures
 from .operators.drop_picture import DropPicture
+from .operators.estimate_lens import EstimateLens
 from .operators.open_cell import OpenCell
+
+PICTURES = ".png;.jpg;.jpeg;.tif;.tiff;.bmp"
 
 
 class OnViewport:
@@ -26,12 +31,41 @@ class CellDrop(OnViewport, bpy.types.FileHandler):
 
 
 class PictureDrop(OnViewport, bpy.types.FileHandler):
-    """The first picture starts a cell once it is said which camera took it; more are sightings."""
+    """A picture starts a cell, once it is said which camera took it."""
 
     bl_idname = "MONOCELL_FH_picture"
-    bl_label = "monocell picture"
+    bl_label = "Start a Cell"
     bl_import_operator = DropPicture.bl_idname
-    bl_file_extensions = ".png;.jpg;.jpeg;.tif;.tiff;.bmp"
+    bl_file_extensions = PICTURES
 
 
-CLASSES = (CellDrop, PictureDrop)
+class SightingDrop(OnViewport, bpy.types.FileHandler):
+    """Pictures of the ball are added to the cell that is open, with the positions copied."""
+
+    bl_idname = "MONOCELL_FH_sightings"
+    bl_label = "Add as Sightings"
+    bl_import_operator = AddPictures.bl_idname
+    bl_file_extensions = PICTURES
+
+    @classmethod
+    def poll_drop(cls, context):
+        """There has to be a cell to add them to."""
+        return super().poll_drop(context) and has_cell(context.scene)
+
+
+class BoardDrop(OnViewport, bpy.types.FileHandler):
+    """Pictures of a board tell the lens."""
+
+    bl_idname = "MONOCELL_FH_board"
+    bl_label = "Estimate the Lens"
+    bl_import_operator = EstimateLens.bl_idname
+    bl_file_extensions = PICTURES
+
+    @classmethod
+    def poll_drop(cls, context):
+        """Before a cell is open, or where its camera is to come from a board."""
+        asked = context.scene.monocell_inputs.camera_source == "BOARD"
+        return super().poll_drop(context) and (asked or not has_cell(context.scene))
+
+
+CLASSES = (CellDrop, PictureDrop, SightingDrop, BoardDrop)

@@ -85,7 +85,7 @@ def everything_property():
     """Whether all objects are meant."""
     return BoolProperty(
         name="All",
-        description="All objects, not the active one alone",
+        description="All objects, hidden ones too, not the active one alone",
         options={"SKIP_SAVE"},
     )
 

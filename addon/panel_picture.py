@@ -65,8 +65,8 @@ def _draw_opened(layout, context):
     if stored.camera is not None and len(stored.camera.data.background_images):
         plate = stored.camera.data.background_images[0]
         row = layout.row(align=True)
-        seen = "HIDE_OFF" if plate.show_background_image else "HIDE_ON"
-        row.prop(plate, "show_background_image", text="", icon=seen)
+        eye = "HIDE_OFF" if plate.show_background_image else "HIDE_ON"
+        row.prop(plate, "show_background_image", text="", icon=eye)
         # which of the cell's pictures is seen is told where it is faded
         told = f"Opacity of {PurePath(stored.shown_picture).name}" if stored.shown_picture else ""
         row.prop(plate, "alpha", text=told or "Opacity", slider=True)
@@ -74,8 +74,16 @@ def _draw_opened(layout, context):
         row.operator(OpenCell.bl_idname, text="", icon="FILE_FOLDER")
     if picture_step(scene).mark == "doubt" and stored.shown_picture:
         layout.operator(FindPictures.bl_idname, icon="VIEWZOOM")
-    if camera_region(scene, context.area) is None:
+    if not _looks_through(context):
         layout.operator(LookThrough.bl_idname, icon="VIEW_CAMERA")
+
+
+def _looks_through(context):
+    """Whether this viewport shows the picture already."""
+    camera, area = context.scene.monocell_cell.camera, context.area
+    if camera is None or area is None or not camera.visible_get(viewport=context.space_data):
+        return False
+    return camera_region(context.scene, area) is not None
 
 
 class LensPanel(CellPanel, bpy.types.Panel):

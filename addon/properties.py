@@ -116,14 +116,14 @@ class SceneCell(bpy.types.PropertyGroup):
     report: StringProperty(name="Report", description="The last search or calibration, JSON")
     folder: StringProperty(name="Folder", description="Where picture names start")
     path: StringProperty(name="File", description="Document it was read from or last saved as")
+    folder_beside: StringProperty(
+        name="Folder beside", description="The same as seen from the .blend file when it was saved"
+    )
     outdated: StringProperty(
         name="Outdated", description="Why objects have to be solved again; empty: they need not"
     )
-    folder_beside: StringProperty(
-        name="Folder beside", description="The same as seen from the .blend when it was saved"
-    )
-    shown_told: StringProperty(name="Told", description="What is to say of the shown picture")
     shown_picture: StringProperty(name="Shown", description="Picture behind the camera view")
+    shown_told: StringProperty(name="Told", description="What is to say of that picture")
     camera: PointerProperty(
         type=bpy.types.Object, name="Camera", description="The camera that took the picture"
     )

@@ -34,15 +34,20 @@ class AddPictures(NeedsCell, bpy.types.Operator):
     unit: unit_property()
 
     def invoke(self, context, event):
-        """Take what was copied, then let pictures be chosen."""
+        """Take what was copied, then let pictures be chosen that were not dropped."""
         self.positions = context.window_manager.clipboard
         self.unit = context.scene.monocell_inputs.position_unit
+        if self.files:
+            return context.window_manager.invoke_props_dialog(self, width=420)
         self.directory = context.scene.monocell_cell.folder + "/"
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def draw(self, context):
         """Blender's call."""
+        if len(self.files):
+            told = "1 picture" if len(self.files) == 1 else f"{len(self.files)} pictures"
+            self.layout.label(text=told, icon="IMAGE_DATA")
         self.layout.prop(self, "positions")
         self.layout.prop(self, "unit", expand=True)
         self.layout.prop(context.scene.monocell_inputs, "ball_radius")

@@ -8,12 +8,13 @@ import bpy
 from bpy.props import StringProperty
 
 from ..camera_inputs import stated_camera
+from ..fields import files_property, folder_property
 from ..refusals import refuses
 from .open_picture import open_picture
 
 
 class DropPicture(bpy.types.Operator):
-    """Start a new cell from the dropped picture"""
+    """Start a new cell from the dropped picture, or the first by name of several"""
 
     bl_idname = "monocell.drop_picture"
     bl_label = "Start a Cell from the Picture"
@@ -26,8 +27,14 @@ class DropPicture(bpy.types.Operator):
         options={"SKIP_SAVE", "HIDDEN"},
     )
 
+    directory: folder_property()
+    files: files_property()
+
     def invoke(self, context, event):
         """Ask which camera took it."""
+        names = sorted(file.name for file in self.files if file.name)
+        if names:
+            self.filepath = str(Path(self.directory) / names[0])
         context.scene.monocell_inputs.picture = self.filepath
         return context.window_manager.invoke_props_dialog(self, width=420)
 
@@ -36,10 +43,17 @@ class DropPicture(bpy.types.Operator):
         from ..panel_lens import camera_inputs
 
         self.layout.label(text=Path(self.filepath).name, icon="IMAGE_DATA")
+        if len(self.files) > 1:
+            told = f"{len(self.files) - 1} more: drop them on the open cell, as its sightings"
+            self.layout.label(text=told, icon="INFO")
         camera_inputs(self.layout, context)
 
     @refuses
     def execute(self, context):
         """Open it with the camera that was stated."""
+        from ...core.errors import PictureError
+
+        if not self.filepath:
+            raise PictureError("no picture was dropped: drop one on the view")
         file = Path(bpy.path.abspath(self.filepath)).resolve()
         return open_picture(self, context, file, stated_camera(context.scene.monocell_inputs, file))

@@ -23,9 +23,11 @@ class EstimateLens(WorksInBackground, bpy.types.Operator):
     filter_folder: shows_property("folders")
 
     def invoke(self, context, event):
-        """Let the pictures be chosen."""
-        # Blender's file browser calls execute, and that must not freeze the window
+        """Let the pictures be chosen that were not dropped; the board is asked for beside them."""
+        # Blender's file browser and dialog call execute, and that must not freeze the window
         self._chosen_by_hand = True
+        if self.files:
+            return context.window_manager.invoke_props_dialog(self)
         picture, cell = context.scene.monocell_inputs.picture, context.scene.monocell_cell.folder
         folder = Path(bpy.path.abspath(picture)).parent if picture else cell or Path.home()
         self.directory = self.directory or f"{folder}/"

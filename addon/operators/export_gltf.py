@@ -22,7 +22,17 @@ def format_of(ending):
 
 
 def _show_files_of(operator, context):
-    operator.filter_glob = "*" + operator.filename_ext
+    """The chosen format's files in the browser, and its ending on the name."""
+    # a menu's entry has the properties alone
+    ending = "." + operator.format.lower()
+    operator.filter_glob = "*" + ending
+    browser = context.space_data
+    if browser is None or browser.type != "FILE_BROWSER" or browser.params is None:
+        return
+    name = Path(browser.params.filename)
+    if name.suffix.lower() in FORMATS:
+        browser.params.filename = str(name.with_suffix(ending))
+    browser.params.filter_glob = operator.filter_glob
 
 
 class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):

@@ -178,11 +178,11 @@ def _radii_between(votes: NDArray[np.uint8]) -> Array:
 
 def _distinct(circles: list[Circle]) -> list[Circle]:
     """The same circle is found on two levels: keep the one with more support."""
-    kept: list[Circle] = []
-    for c in circles:
-        if not any(
-            np.hypot(c.u - k.u, c.v - k.v) < 0.2 * k.radius and 0.83 < c.radius / k.radius < 1.2
-            for k in kept
-        ):
-            kept.append(c)
-    return kept
+    u, v, radius = np.array([[c.u, c.v, c.radius] for c in circles]).reshape(-1, 3).T
+    kept: list[int] = []
+    for i in range(len(circles)):
+        near = np.hypot(u[i] - u[kept], v[i] - v[kept]) < 0.2 * radius[kept]
+        larger = radius[i] / radius[kept]
+        if not (near & (larger > 0.83) & (larger < 1.2)).any():
+            kept.append(i)
+    return [circles[i] for i in kept]

@@ -23,6 +23,9 @@ GREY_TOLERANCE = 0.08
 # light below this share of white has no colour that noise leaves
 DARK = 0.006
 BRIGHT = 0.25
+# an even grid in a disc of radius 1
+SQUARE = np.array(np.meshgrid(np.arange(-5, 6) / 5, np.arange(-5, 6) / 5)).reshape(2, -1)
+DISC_X, DISC_Y = SQUARE[:, np.square(SQUARE).sum(axis=0) <= 1]
 
 
 def color_shares(
@@ -35,11 +38,8 @@ def color_shares(
 
 def inside_of(shape: tuple[int, ...], circle: Circle) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Rows and columns of about a hundred pixels within 0.85 of a circle's radius."""
-    steps = np.arange(-5, 6) / 5
-    x, y = np.meshgrid(steps, steps)
-    within = x * x + y * y <= 1
-    column = np.rint(circle.u + 0.85 * circle.radius * x[within]).astype(int)
-    row = np.rint(circle.v + 0.85 * circle.radius * y[within]).astype(int)
+    column = np.rint(circle.u + 0.85 * circle.radius * DISC_X).astype(int)
+    row = np.rint(circle.v + 0.85 * circle.radius * DISC_Y).astype(int)
     seen = (row >= 0) & (row < shape[0]) & (column >= 0) & (column < shape[1])
     return row[seen], column[seen]
 

@@ -21,7 +21,7 @@ from ..ball.outline_ring import MOST_POINTS
 from ..ball.sphere import OutlineRays, tangency
 from ..camera import Camera
 from ..errors import InvalidValue
-from .common_error import common_covariance, say_of
+from .common_error import common_of, marginalised
 from .joint_pose import JointFit
 from .measured import Measured
 from .observation import OutlineObservation, Place
@@ -129,17 +129,17 @@ def advise(
     _refuse_unknown_places(fit, used_world)
     candidates = frozen(candidates_world, (None, 3), "advised positions")
     used = np.asarray(used_world, dtype=float).reshape(-1, 3)
-    seen, informations, why = [], [], Counter[str]()
+    seen, why = [], Counter[str]()
     for place in candidates:
         view = _view(camera, place, typical.radius, used)
         why[view if isinstance(view, str) else USABLE] += 1
         if not isinstance(view, str):
             seen.append((place, view))
-            informations.append(_predicted(camera, fit, typical, place, view))
     if not seen:
         raise InvalidValue(_none_usable(why, len(candidates)))
     places = np.array([place for place, _ in seen])
-    chosen = _greedy(fit, area, places, np.array(informations), 2 * typical.radius)
+    informations = _predicted(camera, fit, typical, places, [view for _, view in seen])
+    chosen = _greedy(fit, area, places, informations, 2 * typical.radius)
     now = _covariances(fit, _information(fit)[None])
     steps = tuple(
         NextPosition(places[k], *_where(seen[k][1].pixels), sigma, position)
@@ -158,32 +158,42 @@ def _refuse_unknown_places(fit: JointFit, used_world: ArrayLike) -> None:
 
 
 def _predicted(
-    camera: Camera, fit: JointFit, typical: TypicalOutline, place: Array, outline: OutlineRays
+    camera: Camera,
+    fit: JointFit,
+    typical: TypicalOutline,
+    places: Array,
+    outlines: Sequence[OutlineRays],
 ) -> Array:
-    """What a ball not seen yet would say of the fit's P unknowns, (P, P)."""
-    centre = camera.pose.apply(place)
-    held = tangency(outline, centre, typical.radius)
-    rows = _rows(
-        camera,
-        fit,
+    """What balls not seen yet, at places (K, 3), would say of the fit's P unknowns, (K, P, P)."""
+    observations = [
         OutlineObservation(
             outline, np.ones(SAMPLES), Place(place), typical.radius, camera.intrinsics
-        ),
-    )
+        )
+        for place, outline in zip(places, outlines, strict=True)
+    ]
+    measured, count = Measured.of(observations), len(places)
+    rows = _rows(camera, fit, measured, [one.place for one in observations])
+    centres = camera.pose.apply(places)
+    held = tangency(measured.outlines, centres[measured.owner], typical.radius)
+    by_centre = held.by_centre.reshape(count, SAMPLES, 3)
     # an outline is measured at so many places at most, however long it is
-    length = min(2 * np.pi * _radius_pixels(outline.pixels), MOST_POINTS)
-    root = np.full(SAMPLES, np.sqrt(typical.weight_per_pixel * length / SAMPLES))
-    allowed = common_covariance(held, centre, typical.radius)
-    return say_of(held, rows, np.zeros(SAMPLES), root, allowed).information
-
-
-def _rows(camera: Camera, fit: JointFit, observation: OutlineObservation) -> Array:
-    """Derivatives (N, P) of an outline's residuals by the fit's unknowns."""
-    refined = tuple(one.name for one in fit.refined)
-    measured, unknowns = (
-        Measured.of([observation]),
-        Unknowns.of_places([observation.place], refined),
+    sizes = np.array([_radius_pixels(outline.pixels) for outline in outlines])
+    lengths = np.minimum(2 * np.pi * sizes, MOST_POINTS)
+    root = np.sqrt(typical.weight_per_pixel * lengths / SAMPLES)[:, None, None]
+    nothing_left = np.zeros((count, SAMPLES, 1))
+    columns = [by_centre, rows.reshape(count, SAMPLES, -1), nothing_left]
+    whitened = np.concatenate(columns, axis=2) * root
+    allowed = np.array(
+        [common_of(by, c, typical.radius) for by, c in zip(by_centre, centres, strict=True)]
     )
+    reduced, _ = marginalised(np.swapaxes(whitened, 1, 2) @ whitened, allowed)
+    informations: Array = reduced[:, 3:-1, 3:-1]
+    return informations
+
+
+def _rows(camera: Camera, fit: JointFit, measured: Measured, places: Sequence[Place]) -> Array:
+    """Derivatives (N, P) of all outlines' residuals by the fit's unknowns."""
+    unknowns = Unknowns.of_places(places, tuple(one.name for one in fit.refined))
     state = State(camera.pose, np.zeros((0, 3)))
     columns = measured.columns(camera.pose.apply(unknowns.places_base(state)), state)
     return unknowns.rows(columns, measured.owner, state)

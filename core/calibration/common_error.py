@@ -29,17 +29,6 @@ class Say:
     pull: float
 
 
-def say_of(held: Tangency, rows: Array, left: Array, root: Array, allowed: Array) -> Say:
-    """Marginalise a small random move of the ball's centre, of covariance `allowed` (3, 3).
-
-    `rows` (N, P) are derivatives of the residuals `left` (N,), and `root` (N,) the square roots of
-    their weights.
-    """
-    whitened = np.column_stack([held.by_centre, rows, left]) * root[:, None]
-    reduced, pulls = marginalised(np.array([whitened.T @ whitened]), allowed[None])
-    return Say(reduced[0, 3:-1, 3:-1], reduced[0, 3:-1, -1], float(pulls[0]))
-
-
 def marginalised(grams: Array, allowed: Array) -> tuple[Array, Array]:
     """Products of whitened columns (S, M, M) after the centre's move, and the pulls (S,).
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A cell's pictures, read when they are looked at: a name in, its pixels out, few kept."""
+"""A cell's pictures, read when they are looked at: a name in, its pixels out, not all kept."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from collections import OrderedDict
 from collections.abc import Callable
 
 from ..cell import Cell
-from .pictures import Picture, read_picture, read_picture_told
+from .pictures import Picture, read_picture_told
 
-# a picture of 24 megapixels takes 72 MB
-KEPT = 2
+# two pictures of 24 megapixels, or forty of 1280 x 960
+MOST_BYTES = 150_000_000
 
 
 class PictureShelf:
@@ -29,10 +29,12 @@ class PictureShelf:
         if self._watch is not None:
             self._watch(name)
         if name not in self._kept:
-            while len(self._kept) >= KEPT:
-                self._kept.popitem(last=False)
             path, lens = self._cell.path_of(name), self._cell.camera.intrinsics
-            self._kept[name], self._told[name] = read_picture_told(path, lens)
+            picture, self._told[name] = read_picture_told(path, lens)
+            held = sum(one.nbytes for one in self._kept.values())
+            while self._kept and held + picture.nbytes > MOST_BYTES:
+                held -= self._kept.popitem(last=False)[1].nbytes
+            self._kept[name] = picture
         self._kept.move_to_end(name)
         return self._kept[name]
 
@@ -47,4 +49,4 @@ class PictureShelf:
         """Raises PictureError for the first that is missing, before the first is searched."""
         for name in names:
             if not self._cell.path_of(name).is_file():
-                read_picture(self._cell.path_of(name))
+                read_picture_told(self._cell.path_of(name))

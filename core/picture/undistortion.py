@@ -17,6 +17,9 @@ from ..intrinsics import Intrinsics
 LONGEST_SIDE = 32766
 # a flat picture of a wide lens grows without bounds; eight times the pixels is where help ends
 LARGEST_GROWTH = 8.0
+# OpenCV's remap rounds to a 32nd of a pixel: a map that is interpolated in blocks of so many pixels
+# may be off by so much
+BLOCK, MAP_PIXELS = 8, 0.005
 # each distorted pixel is the mean of so many by so many points
 POINTS_PER_SIDE = 4
 
@@ -31,8 +34,45 @@ def undistorted_picture(picture: NDArray[Any], intrinsics: Intrinsics) -> NDArra
     _check_size(picture, intrinsics)
     if intrinsics.distortion.model == "none":
         return picture.copy()
-    rays = intrinsics.undistorted().rays(_pixel_centres(intrinsics))
-    return _remapped(picture, _as_map(intrinsics.project(rays), intrinsics), cv2.INTER_CUBIC)
+    # no ray is a place outside any picture
+    place = np.nan_to_num(view_map(intrinsics), copy=False, nan=-1e4)
+    return _remapped(picture, place, cv2.INTER_CUBIC)
+
+
+def view_map(intrinsics: Intrinsics) -> NDArray[np.float32]:
+    """Where the lens images each pixel of its undistorted view, (H, W, 2); NaN where nowhere.
+
+    Lenses are smooth: the map is worked out once a block, and between blocks is interpolated
+    wherever that is true to `MAP_PIXELS`. The rest is worked out pixel by pixel.
+    """
+    height, width = intrinsics.height, intrinsics.width
+    # the middles of all blocks, with one row of them beyond the picture on each side
+    rows, columns = (np.arange(-1, -(-n // BLOCK) + 1) * BLOCK for n in (height, width))
+    half = (BLOCK - 1) / 2
+    nodes = _imaged(intrinsics, columns + half, rows + half)
+    # halfway between four blocks, where interpolating is worst
+    true = _imaged(intrinsics, columns[:-1] + half + BLOCK / 2, rows[:-1] + half + BLOCK / 2)
+    between = (nodes[:-1, :-1] + nodes[:-1, 1:] + nodes[1:, :-1] + nodes[1:, 1:]) / 4
+    # a comparison with NaN is false
+    smooth = (np.abs(between - true) <= MAP_PIXELS).all(axis=2).astype(np.uint8)
+    # beside a place where the lens turns over, its middle may be right by chance
+    smooth = cv2.erode(smooth, np.ones((5, 5), np.uint8)) > 0
+    size = (BLOCK * len(columns), BLOCK * len(rows))
+    filled = cv2.resize(nodes.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
+    whole = np.ascontiguousarray(filled[BLOCK : BLOCK + height, BLOCK : BLOCK + width])
+    # which four blocks a pixel lies between
+    row, column = ((np.arange(n) + BLOCK // 2) // BLOCK for n in (height, width))
+    v, u = np.nonzero(~smooth[np.ix_(row, column)])
+    rays = intrinsics.undistorted().rays(np.stack([u, v], axis=1).astype(float))
+    whole[v, u] = intrinsics.project(rays)
+    return whole
+
+
+def _imaged(intrinsics: Intrinsics, u: Array, v: Array) -> Array:
+    """Where the lens images the pixels of the undistorted view at all `u` by all `v`, (V, U, 2)."""
+    pixels = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
+    imaged = intrinsics.project(intrinsics.undistorted().rays(pixels))
+    return imaged.reshape(len(v), len(u), 2)
 
 
 def pinhole_around(intrinsics: Intrinsics, finer: float) -> Intrinsics:
@@ -130,11 +170,6 @@ def _check_size(picture: NDArray[Any], intrinsics: Intrinsics) -> None:
         raise PictureError(f"{max(expected)} px on one side is more than {LONGEST_SIDE}; scale it")
 
 
-def _pixel_centres(intrinsics: Intrinsics) -> Array:
-    v, u = np.mgrid[: intrinsics.height, : intrinsics.width]
-    return np.stack([u.ravel(), v.ravel()], axis=1).astype(float)
-
-
 def _rim(intrinsics: Intrinsics) -> Array:
     """Points (N, 2) along the outer border of the picture, one per pixel."""
     u = np.arange(intrinsics.width + 1) - 0.5
@@ -142,12 +177,6 @@ def _rim(intrinsics: Intrinsics) -> Array:
     sides = [np.stack([u, np.full_like(u, at)], 1) for at in (v[0], v[-1])]
     sides += [np.stack([np.full_like(v, at), v], 1) for at in (u[0], u[-1])]
     return np.concatenate(sides)
-
-
-def _as_map(pixels: Array, intrinsics: Intrinsics) -> NDArray[np.float32]:
-    """Pixels (H*W, 2) or (H, W, 2) as OpenCV's map; no ray becomes a place outside any picture."""
-    shaped = pixels.reshape(intrinsics.height, intrinsics.width, 2)
-    return np.nan_to_num(shaped, nan=-1e4).astype(np.float32)
 
 
 def _remapped(picture: NDArray[Any], place: NDArray[np.float32], how: int) -> NDArray[Any]:

@@ -72,8 +72,12 @@ class FileMoves:
     does_save_and_open_document.often = 3
 
     def does_export_and_open(self):
+        if self.chance(0.3):
+            ending = self.one_of(["STL", "URDF", "MJCF", "PLY", "nothing"])
+            path = self.folder / f"cell.{ending.lower()}"
+            self.press("export_gltf", filepath=str(path))
         path = self.folder / "cell.glb"
-        if self.press("export_gltf", filepath=str(path)) != {"FINISHED"}:
+        if self.press("export_gltf", filepath=str(path), format="GLB") != {"FINISHED"}:
             return
         names = {thing.name for thing in self.cell().objects}
         if self.press("open_gltf", filepath=str(path)) == {"FINISHED"}:

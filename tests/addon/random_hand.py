@@ -63,7 +63,7 @@ def walked(new_hand, steps):
 
 
 def shortest(new_hand, steps, failure):
-    """As few of the steps as still go wrong in the same place, by leaving out ever smaller parts."""
+    """As few of the steps as still go wrong in the same place; ever smaller parts are left out."""
     wanted, size, replays = _place(failure), max(1, len(steps) // 2), 0
     while size >= 1:
         start = 0

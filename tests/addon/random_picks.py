@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a random user clicks on the picture: a kind of solid in, picks that may or may not be one."""
+"""What a random user clicks: a kind of solid in, picks that may be one out."""
 
 from __future__ import annotations
 

@@ -225,7 +225,9 @@ class VerbMoves:
     does_align.often = 1
 
     def does_propose(self):
-        self.press("propose", on=self.one_of(["", "floor"]), doubtful=self.chance(0.5))
+        # looking for it takes seconds
+        on = self.one_of(["nothing", "nothing", "nothing", ""])
+        self.press("propose", on=on, doubtful=self.chance(0.5))
 
     does_propose.often = 1
 

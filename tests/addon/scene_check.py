@@ -64,8 +64,8 @@ def _check_objects(bpy, module, cell):
         return
     graph = bpy.context.evaluated_depsgraph_get()
     for ob, thing in zip(modelled, cell.objects, strict=True):
-        # a hidden object's matrix is not kept by Blender
-        if not ob.data.vertices or ob.name not in bpy.context.view_layer.objects:
+        # where a hidden object stands Blender may not know before it is shown
+        if not ob.data.vertices or not ob.visible_get():
             continue
         place = ob.evaluated_get(graph).matrix_world
         seen = np.array([place @ vertex.co for vertex in ob.data.vertices])
@@ -95,10 +95,10 @@ def _check_overlay(bpy, module):
         plane = document.active_plane(scene)
         grid = None if plane is None else module("addon.plane_grid").plane_grid(cell.camera, plane)
         strokes += [] if grid is None else list(lines.grid_strokes(grid, look))
-        overlay = module("addon.overlay")
+        wires = module("addon.object_lines")
         for ob in scene.objects:
             if module("scene.objects").is_modelled(ob):
-                overlay._object_key(ob, True)
-                overlay._lines_of(scene, ob, True, look)
+                wires._object_key(ob, True)
+                wires._lines_of(scene, ob, True, look)
     for stroke in strokes:
         assert all(np.isfinite(line).all() for line in stroke.lines), stroke

@@ -117,7 +117,7 @@ def test_files_that_are_dropped_find_their_operator(addon, tmp_path):
     ]
     found = {cls.bl_file_extensions: cls.bl_import_operator for cls in handlers}
     assert found[".json"] == "monocell.open_cell"
-    (pictures,) = [operator for endings, operator in found.items() if ".png" in endings]
+    pictures = {cls.bl_idname: cls.bl_import_operator for cls in handlers}["MONOCELL_FH_picture"]
     path = tmp_path / "dropped.png"
     cv2.imwrite(str(path), photograph(bench_cell.INTRINSICS, ()))
     inputs = addon.context.scene.monocell_inputs

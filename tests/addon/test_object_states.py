@@ -95,12 +95,19 @@ def test_an_object_sheared_by_its_parent_is_refused_in_words(addon, scene, tmp_p
         things(addon, tmp_path)
 
 
-def test_an_object_that_a_constraint_holds_says_so_when_it_is_solved_again(addon, scene, tmp_path):
+def test_the_place_that_a_constraint_gives_counts_and_solving_says_so(
+    addon, scene, tmp_path, capfd
+):
     target = addon.data.objects.new("target", None)
     scene.collection.objects.link(target)
     target.location = (0.5, 0.5, 0.5)
     held = scene.objects["box"].constraints.new("COPY_LOCATION")
     held.target = target
+    addon.context.view_layer.update()
+    assert np.allclose(things(addon, tmp_path)["box"].world_from_object.translation, 0.5)
+    capfd.readouterr()
+    assert addon.ops.monocell.solve_again() == {"FINISHED"}
+    assert "box: stands where its constraints put it" in capfd.readouterr().out
     addon.context.view_layer.update()
     assert np.allclose(things(addon, tmp_path)["box"].world_from_object.translation, 0.5)
 

@@ -269,3 +269,12 @@ def test_a_box_is_added_while_another_is_edited(addon, bench, tmp_path):
     assert add(addon, "box", bench_cell.box_picks(), name="second") == {"FINISHED"}
     names = {thing.name for thing in saved(addon, tmp_path / "x.cell.json").objects}
     assert {"first", "second"} <= names
+
+
+def test_a_script_that_names_the_export_s_format_prints_no_traceback(addon, bench, tmp_path, capfd):
+    opened(addon, bench)
+    path = tmp_path / "cell.stl"
+    add(addon, "box", bench_cell.box_picks())
+    assert addon.ops.monocell.export_gltf(filepath=str(path), format="STL") == {"FINISHED"}
+    assert path.stat().st_size > 80
+    assert "Traceback" not in "".join(capfd.readouterr())

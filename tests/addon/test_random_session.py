@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from random_hand import Hand, Step, read_steps, shortest, walked
+from random_picks import KINDS
 
 pytestmark = [pytest.mark.blender, pytest.mark.slow]
 
@@ -70,3 +71,14 @@ def test_whatever_is_done_the_document_stays_valid(new_hand, seed):
     # a session that is mostly refused proves little
     assert hand.checked > STEPS / 3
     assert hand.refusals
+
+
+def test_the_hand_knows_every_operator(module):
+    source = "".join(path.read_text() for path in Path(__file__).parent.glob("random_*.py"))
+    known = {f"add_{kind}" for kind in KINDS}
+    unknown = [
+        verb
+        for verb in module("addon.operators").VERBS
+        if verb not in known and f'"{verb}"' not in source
+    ]
+    assert not unknown, f"{unknown}: add a move for each to random_verbs.py"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""URDF, SDF, MJCF and MoveIt scenes hold what the cell does: shapes where they stand, names, looks."""
+"""URDF, SDF, MJCF and MoveIt scenes hold the shapes of a cell where they stand, and names."""
 
 from __future__ import annotations
 

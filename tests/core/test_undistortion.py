@@ -12,6 +12,7 @@ from monocell.core.picture.undistortion import (
     distorted_picture,
     distorted_window,
     pinhole_around,
+    view_map,
     window_behind,
 )
 
@@ -64,3 +65,28 @@ def test_a_window_where_the_lens_sees_nothing_is_refused():
     pinhole = Intrinsics(800, 600, 180.0, 180.0, 400.0, 300.0)
     with pytest.raises(InvalidValue, match="images nothing"):
         window_behind(pinhole, folded, (0, 0, 20, 20))
+
+
+MAPPED = {
+    "plain": (800, 600, 760.0, Distortion("plumb_bob", [-0.22, 0.07, 0.0006, -0.0004, -0.01])),
+    "seeing less than its frame": (
+        801,
+        603,
+        300.0,
+        Distortion("plumb_bob", [-0.35, 0.12, 0, 0, -0.02]),
+    ),
+    "turning over": (640, 480, 150.0, Distortion("plumb_bob", [-0.4, 0.1, 0.001, 0, 0])),
+    "fisheye": (640, 480, 200.0, Distortion("equidistant", [0.02, -0.01, 0.003, 0])),
+    "smaller than a block": (7, 5, 8.0, Distortion("plumb_bob", [-0.2, 0, 0, 0, 0])),
+}
+
+
+@pytest.mark.parametrize("name", MAPPED)
+def test_the_map_of_a_view_is_that_of_every_pixel(name):
+    width, height, focal, distortion = MAPPED[name]
+    i = Intrinsics(width, height, focal, focal, 0.51 * width, 0.48 * height, distortion)
+    v, u = np.mgrid[:height, :width]
+    true = i.project(i.undistorted().rays(np.stack([u.ravel(), v.ravel()], 1).astype(float)))
+    error = np.abs(view_map(i) - true.reshape(height, width, 2))
+    assert (np.isnan(error) == np.isnan(true.reshape(height, width, 2))).all()
+    assert np.nanmax(error) <= 0.005

@@ -185,7 +185,9 @@ def test_compare_with_another_kind(refused, job):
 
 
 def test_an_ending_that_is_not_exported(refused):
-    assert "must be .glb" in refused("export", "truth.cell.json", "out.obj")
+    assert "no format ends in .dae; name it one of .glb" in refused(
+        "export", "truth.cell.json", "out.dae"
+    )
 
 
 def test_rendering_without_a_pose_or_samples(refused):

@@ -211,6 +211,32 @@ def second_window():
     yield from left("window")
 
 
+def closed_window():
+    """A window is closed in which something is picked, and one in which something works."""
+    for name, verb, options in (
+        ("closed", bpy.ops.monocell.add_box, {}),
+        ("working", bpy.ops.monocell.align, {"everything": True}),
+    ):
+        first = view()[0]
+        with bpy.context.temp_override(window=first):
+            bpy.ops.wm.window_new_main()
+        yield 1.0
+        second = next(w for w in bpy.context.window_manager.windows if w != first)
+        area = next(area for area in second.screen.areas if area.type == "VIEW_3D")
+        region = next(region for region in area.regions if region.type == "WINDOW")
+        with bpy.context.temp_override(window=second, area=area, region=region):
+            bpy.ops.monocell.look_through("EXEC_DEFAULT", True)
+            verb("INVOKE_DEFAULT", **options)
+        yield 0.1
+        work = bpy.context.window_manager.monocell_work
+        found[f"was_{name}"] = work.picking or bool(work.title)
+        with bpy.context.temp_override(window=second):
+            bpy.ops.wm.window_close()
+        yield from settle()
+        yield from left(name)
+        found[f"title_{name}"] = bpy.context.window_manager.monocell_work.title
+
+
 def in_edit_mode():
     """An action in edit mode is one undo step, which leads back into it."""
     active("box")
@@ -241,23 +267,25 @@ def loaded():
     save("loaded")
 
 
+def modelled():
+    """Box and drum, without a click."""
+    for verb, picks in ((bpy.ops.monocell.add_box, "box"), (bpy.ops.monocell.add_cylinder, "drum")):
+        in_view(verb, "EXEC_DEFAULT", True, picks=job["picks"][picks])
+    yield from settle()
+
+
+RUNS = {
+    "views": (quad, local, hidden, in_edit_mode, loaded),
+    "left": (modelled, other_area, full_screen, other_workspace, other_scene, undone_meanwhile),
+    "windows": (modelled, other_scene, second_window, closed_window),
+}
+
+
 def steps():
     yield from show_sidebar()
     in_view(bpy.ops.monocell.open_cell, "EXEC_DEFAULT", True, filepath=job["document"])
     yield from settle()
-    for part in (
-        quad,
-        local,
-        hidden,
-        other_area,
-        full_screen,
-        other_workspace,
-        other_scene,
-        undone_meanwhile,
-        second_window,
-        in_edit_mode,
-        loaded,
-    ):
+    for part in RUNS[job["run"]]:
         yield from part()
 
 
