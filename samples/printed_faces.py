@@ -20,7 +20,7 @@ Print = NDArray[np.uint8]
 FONT = cv2.FONT_HERSHEY_DUPLEX
 # blue green red, sRGB, as OpenCV paints
 BROWN_INK, TAPE = (38, 52, 74), (132, 170, 196)
-CREAM, PALE_INK = (196, 214, 222), (120, 132, 126)
+CREAM = (196, 214, 222)
 
 
 def printed(thing: Primitive, color: tuple[float, float, float], folder: Path) -> Primitive:
@@ -75,14 +75,14 @@ def _carton(face: str, paper: NDArray, rng: np.random.Generator) -> Print:
 
 
 def _can(face: str, paint: NDArray, rng: np.random.Generator) -> Print:
-    """A tin: a lid of metal, a label with a pale band round it."""
+    """A tin: a lid of metal, and pale letters round it."""
     rows, columns = paint.shape[:2]
     if face != "side":
         return _whole(np.full_like(paint, 172.0) + _clouds(rng, rows, columns, 30, 3.0))
     label = _whole(paint + _clouds(rng, rows, columns, 40, 3.0))
-    cv2.rectangle(label, (0, int(0.36 * rows)), (columns, int(0.64 * rows)), CREAM, -1)
+    # a band round it would look like a rim
     for left in (0.0, 0.333, 0.667):
-        _text(label, "COFFEE", (left, 0.56), 0.20, PALE_INK)
+        _text(label, "COFFEE", (left, 0.50), 0.22, CREAM)
     return label
 
 
