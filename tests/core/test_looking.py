@@ -60,8 +60,8 @@ def test_each_picture_is_read_once(tmp_path, monkeypatch):
         read.append(path.name)
         return original(path, intrinsics)
 
-    original = shelf.read_picture
-    monkeypatch.setattr(shelf, "read_picture", counted)
+    original = shelf.read_picture_told
+    monkeypatch.setattr(shelf, "read_picture_told", counted)
     calibrate_cell(cell)
     # though looked at for what stays the same, for the balls, and closely
     assert sorted(read) == sorted({s.picture for s in cell.sightings})
@@ -79,8 +79,10 @@ def test_the_shelf_keeps_few_megabytes(tmp_path, monkeypatch):
 
 def test_a_crowded_picture_is_read_once(crowded, monkeypatch):
     read = []
-    original = shelf.read_picture
-    monkeypatch.setattr(shelf, "read_picture", lambda *a: read.append(a[0].name) or original(*a))
+    original = shelf.read_picture_told
+    monkeypatch.setattr(
+        shelf, "read_picture_told", lambda *a: read.append(a[0].name) or original(*a)
+    )
     calibrate_cell(crowded)
     assert read == ["all.png"]
 
