@@ -234,3 +234,11 @@ def test_a_script_s_object_is_edited_as_if_it_was_drawn(addon, module, scene, tm
     # what stands keeps its base where it is
     assert crate.world_from_object.translation[2] == pytest.approx(0.15)
     assert len([ob for ob in scene.objects if ob.name.startswith("crate")]) == 1
+
+
+def test_an_index_beyond_the_list_chooses_nothing_and_prints_no_traceback(addon, scene, capfd):
+    stored = addon.context.scene.monocell_cell
+    before = addon.context.view_layer.objects.active
+    stored.object_index = 99
+    assert addon.context.view_layer.objects.active == before
+    assert "Traceback" not in "".join(capfd.readouterr())
