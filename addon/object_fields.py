@@ -55,7 +55,7 @@ def _lock(place):
 def _set_lock(place):
     def locked(group, value):
         thing = active_thing(bpy.context)
-        if thing is not None:
+        if thing is not None and place < len(thing.sizes):
             _change(group, place, float(thing.sizes[place]) if value else None)
 
     return locked

@@ -242,3 +242,15 @@ def test_an_index_beyond_the_list_chooses_nothing_and_prints_no_traceback(addon,
     stored.object_index = 99
     assert addon.context.view_layer.objects.active == before
     assert "Traceback" not in "".join(capfd.readouterr())
+
+
+def test_the_lock_of_a_size_that_an_object_has_not_does_nothing(addon, scene, capfd):
+    fields = addon.context.scene.monocell_object
+    addon.ops.monocell.add_sphere(
+        way="FLOATING",
+        picks='{"outline": [[400, 300], [440, 300], [420, 340]]}',
+        known='{"radius": 0.05}',
+    )
+    fields.known_2 = True
+    assert not fields.known_2
+    assert "Traceback" not in "".join(capfd.readouterr())
