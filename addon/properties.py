@@ -97,6 +97,9 @@ def _active_index(cell):
 
 
 def _activate(cell, index):
+    if index >= len(cell.id_data.objects):
+        # a script may name any; the list never does
+        return
     ob = cell.id_data.objects[index]
     for other in bpy.context.selected_objects:
         other.select_set(False)

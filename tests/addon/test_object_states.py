@@ -234,3 +234,23 @@ def test_a_script_s_object_is_edited_as_if_it_was_drawn(addon, module, scene, tm
     # what stands keeps its base where it is
     assert crate.world_from_object.translation[2] == pytest.approx(0.15)
     assert len([ob for ob in scene.objects if ob.name.startswith("crate")]) == 1
+
+
+def test_an_index_beyond_the_list_chooses_nothing_and_prints_no_traceback(addon, scene, capfd):
+    stored = addon.context.scene.monocell_cell
+    before = addon.context.view_layer.objects.active
+    stored.object_index = 99
+    assert addon.context.view_layer.objects.active == before
+    assert "Traceback" not in "".join(capfd.readouterr())
+
+
+def test_the_lock_of_a_size_that_an_object_has_not_does_nothing(addon, scene, capfd):
+    fields = addon.context.scene.monocell_object
+    addon.ops.monocell.add_sphere(
+        way="FLOATING",
+        picks='{"outline": [[400, 300], [440, 300], [420, 340]]}',
+        known='{"radius": 0.05}',
+    )
+    fields.known_2 = True
+    assert not fields.known_2
+    assert "Traceback" not in "".join(capfd.readouterr())
