@@ -6,7 +6,9 @@ def register():
     """Put all of it in place. OpenCV and the graphics module wait until they are needed."""
     import bpy
 
-    from . import file_events, keymap, menus, overlay, properties, tools
+    from . import keymap, menus, properties, tools
+    from .cell import file_events
+    from .overlay import overlay
 
     properties.register()
     for cls in _classes():
@@ -22,7 +24,9 @@ def unregister():
     """Take it away, in reverse."""
     import bpy
 
-    from . import file_events, keymap, menus, overlay, properties, tools
+    from . import keymap, menus, properties, tools
+    from .cell import file_events
+    from .overlay import overlay
 
     tools.unregister()
     keymap.unregister()
@@ -35,17 +39,8 @@ def unregister():
 
 
 def _classes():
-    from . import (
-        drops,
-        lists,
-        menus,
-        operators,
-        panel_camera,
-        panel_model,
-        panel_object,
-        panel_picture,
-        panel_use,
-    )
+    from . import drops, menus, operators
+    from .panels import lists, panel_camera, panel_model, panel_object, panel_picture, panel_use
     from .preferences import Preferences
 
     return (

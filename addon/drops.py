@@ -3,7 +3,7 @@
 
 import bpy
 
-from .document import has_cell
+from .cell.document import has_cell
 from .operators.add_pictures import AddPictures
 from .operators.drop_picture import DropPicture
 from .operators.estimate_lens import EstimateLens

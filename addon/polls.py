@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """When an operator can run, and what to do first when it can't: mixins for `poll`."""
 
-from .document import bare_cell, has_cell
+from .cell.document import bare_cell, has_cell
 
 
 class NeedsCell:

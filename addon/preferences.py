@@ -9,8 +9,8 @@ from typing import Any
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty
 
-from .drawing import Color
 from .keymap import ENTRIES, KEYMAP
+from .overlay.drawing import Color
 from .settings import DEFAULTS, Settings
 
 EXTENSION = __package__.rpartition(".")[0]

@@ -13,13 +13,13 @@ from bpy.props import (
 )
 
 from ..core.sighting import LEAST_RADIUS, MOST_RADIUS
-from .document import bare_cell
+from .camera.lens_inputs import LensInputs
+from .camera.place_inputs import decimals
+from .camera.sightings import edit_sighting
+from .cell.document import bare_cell
 from .fields import length_property, place_property
 from .inputs import CENTRE_TOLD, SceneInputs
-from .lens_inputs import LensInputs
-from .object_fields import ObjectFields
-from .place_inputs import decimals
-from .sightings import edit_sighting
+from .modelling.object_fields import ObjectFields
 
 
 def _sighting(row):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .drawing import GREEN, ORANGE, RED, SKY, VIOLET, YELLOW, Color
+from .overlay.drawing import GREEN, ORANGE, RED, SKY, VIOLET, YELLOW, Color
 
 
 @dataclass(frozen=True)

@@ -79,7 +79,7 @@ def calibrate():
 
 def hundred_objects():
     """Boxes and drums all over the sample's table."""
-    primitives, document = part("core.primitives"), part("addon.document")
+    primitives, document = part("core.primitives"), part("addon.cell.document")
     pose = part("core.pose").Pose
     scene = bpy.context.scene
     things = []
@@ -99,9 +99,9 @@ class Timed:
     """The overlay, drawn a second time with the clock running."""
 
     def __init__(self):
-        changes = part("addon.scene_changes").SceneChanges()
+        changes = part("addon.overlay.scene_changes").SceneChanges()
         changes.listen()
-        self.overlay, self.name = part("addon.overlay").Overlay(changes), ""
+        self.overlay, self.name = part("addon.overlay.overlay").Overlay(changes), ""
 
     def draw(self):
         if not self.name:
@@ -130,8 +130,8 @@ def redrawn(clock, name, between=lambda i: None):
 def pick():
     """Aim, snap and preview at every place of the cursor, as between two redraws."""
     scene = bpy.context.scene
-    aiming, sessions = part("addon.aiming"), part("addon.pick_session")
-    plans, document = part("addon.pick_plans"), part("addon.document")
+    aiming, sessions = part("addon.on_picture.aiming"), part("addon.picking.pick_session")
+    plans, document = part("addon.picking.pick_plans"), part("addon.cell.document")
     sketch = next(s for s in document.bare_cell(scene).sketches if s.kind == "box")
     camera, plane = document.bare_cell(scene).camera, document.active_plane(scene)
     aims = aiming.Aiming.of(scene, viewport().spaces.active)

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..adding import AddsPicked, way_property
+from ..modelling.adding import AddsPicked, way_property
 
 
 class AddCylinder(AddsPicked, bpy.types.Operator):

@@ -7,8 +7,8 @@ import bpy
 from bpy.props import StringProperty
 
 from ..fields import length_property, new_name_property
+from ..modelling.reference_adding import add_reference
 from ..polls import NeedsPose
-from ..reference_adding import add_reference
 from ..refusals import refuses
 
 
@@ -37,7 +37,7 @@ class AddParallelPlane(NeedsPose, bpy.types.Operator):
     def execute(self, context):
         """Add it."""
         from ...core.references.sources import Parallel
-        from ..place_inputs import decimals
+        from ..camera.place_inputs import decimals
 
         distance = float(decimals([self.distance])[0])
         add_reference(self, context, "plane", self.to, lambda on: Parallel(on, distance))

@@ -7,11 +7,11 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
+from ..camera.place_inputs import decimals
+from ..camera.sightings import add_sightings
 from ..fields import files_property, folder_property, shows_property, unit_property
-from ..place_inputs import decimals
 from ..polls import NeedsCell
 from ..refusals import refuses
-from ..sightings import add_sightings
 
 
 class AddPictures(NeedsCell, bpy.types.Operator):

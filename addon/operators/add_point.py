@@ -6,11 +6,11 @@ from typing import ClassVar
 import bpy
 from bpy.props import FloatVectorProperty
 
-from ..on_picture import OnPicture
-from ..place_inputs import stated_place
+from ..camera.place_inputs import stated_place
+from ..camera.sightings import add_sightings
+from ..on_picture.on_picture import OnPicture
 from ..polls import NeedsCell
 from ..refusals import refuses, refuses_to_start
-from ..sightings import add_sightings
 
 
 class AddPoint(OnPicture, NeedsCell, bpy.types.Operator):

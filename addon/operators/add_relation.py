@@ -7,7 +7,7 @@ import bpy
 from bpy.props import EnumProperty, StringProperty
 
 from ..fields import object_property
-from ..model_changes import change_model, name_of, paths_for
+from ..modelling.model_changes import change_model, name_of, paths_for
 from ..polls import NeedsPose
 from ..refusals import refuses
 
@@ -31,8 +31,8 @@ def _paths(operator, context, typed):
 def _own_parts(operator, context, typed):
     from ...core.errors import MonocellError
     from ...core.shape.features import feature_names
-    from ..editing import object_called
-    from ..modelled import standing_cell
+    from ..modelling.editing import object_called
+    from ..modelling.modelled import standing_cell
 
     try:
         cell = standing_cell(context.scene)
@@ -89,7 +89,7 @@ class AddRelation(NeedsPose, bpy.types.Operator):
     def execute(self, context):
         """Solve again with it."""
         from ...core.relation import Relation
-        from ..editing import object_called, with_relations
+        from ..modelling.editing import object_called, with_relations
 
         name = name_of(context, self.name)
         about = self.about or None if self.kind == "symmetric" else None

@@ -6,10 +6,10 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
-from ..place_inputs import decimals, stated_place
+from ..camera.place_inputs import decimals, stated_place
+from ..camera.sightings import add_sightings
 from ..polls import NeedsCell
 from ..refusals import refuses
-from ..sightings import add_sightings
 
 
 class AddSighting(NeedsCell, bpy.types.Operator):

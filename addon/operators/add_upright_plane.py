@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..reference_adding import PicksUpright
+from ..modelling.reference_adding import PicksUpright
 
 
 class AddUprightPlane(PicksUpright, bpy.types.Operator):

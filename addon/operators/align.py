@@ -6,11 +6,11 @@ from typing import ClassVar
 import bpy
 
 from ..background_job import WorksInBackground
-from ..document import read_scene, show_objects, stored_report, write_scene
+from ..cell.document import read_scene, show_objects, stored_report, write_scene
 from ..fields import everything_property, object_property
 from ..polls import NeedsPose
 from ..preferences import settings
-from ..reviewing import Reviewed
+from ..review.reviewing import Reviewed
 
 
 class Align(Reviewed, WorksInBackground, NeedsPose, bpy.types.Operator):
@@ -25,8 +25,8 @@ class Align(Reviewed, WorksInBackground, NeedsPose, bpy.types.Operator):
 
     def prepare(self, context):
         """What is done in the background."""
-        from ..aligning import aligned
-        from ..model_changes import name_of
+        from ..modelling.model_changes import name_of
+        from ..review.aligning import aligned
 
         cell = read_scene(context.scene)
         names = None if self.everything else [name_of(context, self.name)]
@@ -35,14 +35,14 @@ class Align(Reviewed, WorksInBackground, NeedsPose, bpy.types.Operator):
 
     def offered(self, context, result):
         """What would move, and what stays."""
-        from ..offer import offer_of_aligned
+        from ..review.offer import offer_of_aligned
 
         cell, aligned = result
         return offer_of_aligned(cell.objects, aligned.objects, settings(context).unit)
 
     def take(self, context, result, offer):
         """Move what is taken, and say what was not believed and why."""
-        from ..aligning import with_taken
+        from ..review.aligning import with_taken
 
         cell, aligned = result
         scene, found = context.scene, aligned.objects

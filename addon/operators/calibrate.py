@@ -6,10 +6,10 @@ from typing import ClassVar
 import bpy
 
 from ..background_job import WorksInBackground
-from ..cell_scene import put_camera
-from ..document import bare_cell, read_scene, write_scene
+from ..cell.cell_scene import put_camera
+from ..cell.document import bare_cell, read_scene, write_scene
+from ..panels.steps import FEWEST_SIGHTINGS
 from ..polls import NeedsCell
-from ..steps import FEWEST_SIGHTINGS
 
 
 class Calibrate(WorksInBackground, NeedsCell, bpy.types.Operator):
@@ -34,7 +34,7 @@ class Calibrate(WorksInBackground, NeedsCell, bpy.types.Operator):
 
     def prepare(self, context):
         """What is done in the background."""
-        from ..calibrating import LOOKS, calibrated
+        from ..camera.calibrating import LOOKS, calibrated
 
         cell = bare_cell(context.scene)
         total = LOOKS * len(cell.in_use().sightings)
@@ -42,7 +42,7 @@ class Calibrate(WorksInBackground, NeedsCell, bpy.types.Operator):
 
     def finish(self, context, result):
         """Let document and Blender's camera take the pose."""
-        from ..camera_change import mark_objects, same_camera
+        from ..camera.camera_change import mark_objects, same_camera
 
         (cell, report), before = result, read_scene(context.scene)
         write_scene(context.scene, cell, report)

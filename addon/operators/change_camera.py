@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import bpy
 
-from ..camera_inputs import camera_for
-from ..document import bare_cell
+from ..camera.camera_inputs import camera_for
+from ..cell.document import bare_cell
 from ..polls import NeedsCell
 from ..refusals import refuses
 
@@ -21,7 +21,7 @@ class ChangeCamera(NeedsCell, bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Undistort anew, and let go of what the old camera told."""
-        from ..camera_change import change_camera
+        from ..camera.camera_change import change_camera
 
         scene = context.scene
         inner = bare_cell(scene).camera.intrinsics

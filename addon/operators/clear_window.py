@@ -5,9 +5,9 @@ from typing import ClassVar
 
 import bpy
 
+from ..camera.sightings import edit_sighting
 from ..polls import NeedsSighting
 from ..refusals import refuses
-from ..sightings import edit_sighting
 
 
 class ClearWindow(NeedsSighting, bpy.types.Operator):

@@ -6,12 +6,12 @@ from typing import ClassVar
 import bpy
 from bpy.props import FloatVectorProperty
 
-from ..cell_scene import show_named_picture
-from ..document import bare_cell
-from ..on_picture import OnPicture
+from ..camera.sightings import edit_sighting
+from ..cell.cell_scene import show_named_picture
+from ..cell.document import bare_cell
+from ..on_picture.on_picture import OnPicture
 from ..polls import NeedsSighting
 from ..refusals import refuses, refuses_to_start
-from ..sightings import edit_sighting
 
 # a shorter drag is a slip of the hand
 LEAST_DRAG = 6.0
@@ -45,7 +45,7 @@ class DragWindow(OnPicture, NeedsSighting, bpy.types.Operator):
 
     def handle(self, context, area, event):
         """Press, drag, release."""
-        from ..picture_frame import window_of
+        from ..on_picture.picture_frame import window_of
 
         if event.type != "LEFTMOUSE":
             return None
@@ -67,7 +67,7 @@ class DragWindow(OnPicture, NeedsSighting, bpy.types.Operator):
         """The rectangle, or a cross where it would start."""
         import numpy as np
 
-        from ..drawing import WHITE, YELLOW, draw_crosses, draw_lines
+        from ..overlay.drawing import WHITE, YELLOW, draw_crosses, draw_lines
 
         scale = context.preferences.system.ui_scale
         if self._start is None:

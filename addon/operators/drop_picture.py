@@ -7,7 +7,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
-from ..camera_inputs import stated_camera
+from ..camera.camera_inputs import stated_camera
 from ..fields import files_property, folder_property
 from ..refusals import refuses
 from .open_picture import open_picture
@@ -40,7 +40,7 @@ class DropPicture(bpy.types.Operator):
 
     def draw(self, context):
         """Blender's call."""
-        from ..panel_lens import camera_inputs
+        from ..panels.panel_lens import camera_inputs
 
         self.layout.label(text=Path(self.filepath).name, icon="IMAGE_DATA")
         if len(self.files) > 1:

@@ -42,13 +42,13 @@ class EstimateLens(WorksInBackground, bpy.types.Operator):
 
     def draw(self, context):
         """Blender's call: the board beside the files."""
-        from ..panel_lens import board_inputs
+        from ..panels.panel_lens import board_inputs
 
         board_inputs(self.layout, context.scene.monocell_lens)
 
     def prepare(self, context):
         """What is done in the background."""
-        from ..lens_estimate import MODELS_TRIED, board_of, estimated, pictures_in
+        from ..camera.lens_estimate import MODELS_TRIED, board_of, estimated, pictures_in
 
         inputs = context.scene.monocell_lens
         folder = Path(bpy.path.abspath(self.directory))
@@ -59,7 +59,7 @@ class EstimateLens(WorksInBackground, bpy.types.Operator):
 
     def finish(self, context, result):
         """Keep it as the camera of the picture that is opened next, or of the open cell."""
-        from ..lens_estimate import dump_estimate, told_estimate
+        from ..camera.lens_estimate import dump_estimate, told_estimate
 
         scene = context.scene
         scene.monocell_lens.estimate = dump_estimate(result)

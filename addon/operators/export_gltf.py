@@ -9,8 +9,8 @@ from bpy.props import EnumProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ...core.formats.endings import FORMATS, known_ending
-from ..cell_scene import title_of
-from ..document import doubts_of, read_scene
+from ..cell.cell_scene import title_of
+from ..cell.document import doubts_of, read_scene
 from ..fields import endings_property
 from ..polls import NeedsCell
 from ..refusals import refuses

@@ -6,7 +6,7 @@ from typing import ClassVar
 import bpy
 
 from ..background_job import WorksInBackground
-from ..document import bare_cell, stored_report, write_scene
+from ..cell.document import bare_cell, stored_report, write_scene
 from ..polls import NeedsCell
 
 
@@ -29,7 +29,7 @@ class FindAll(WorksInBackground, NeedsCell, bpy.types.Operator):
 
     def prepare(self, context):
         """What is done in the background."""
-        from ..calibrating import found
+        from ..camera.calibrating import found
 
         cell = bare_cell(context.scene)
         return "Finding", len(cell.in_use().sightings), lambda watch: found(cell, watch)

@@ -6,10 +6,10 @@ from typing import ClassVar
 
 import bpy
 
+from ..camera.sightings import rename_pictures
 from ..fields import folder_property, shows_property
 from ..polls import NeedsCell
 from ..refusals import refuses
-from ..sightings import rename_pictures
 
 
 class FindPictures(NeedsCell, bpy.types.Operator):

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..cell_scene import look_through, put_camera, show_picture_again
+from ..cell.cell_scene import look_through, put_camera, show_picture_again
 from ..polls import NeedsCell
 from ..refusals import refuses
 

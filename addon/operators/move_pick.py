@@ -6,11 +6,11 @@ from typing import ClassVar
 import bpy
 from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
-from ..camera_view import camera_region, view_of
 from ..fields import object_property
-from ..model_changes import active_object, change_model, name_of
-from ..on_picture import OnPicture
-from ..picture_frame import picture_frame
+from ..modelling.model_changes import active_object, change_model, name_of
+from ..on_picture.camera_view import camera_region, view_of
+from ..on_picture.on_picture import OnPicture
+from ..on_picture.picture_frame import picture_frame
 from ..polls import NeedsPose
 from ..preferences import settings
 from ..refusals import refuses, refuses_to_start
@@ -47,9 +47,9 @@ class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
     @refuses_to_start
     def invoke(self, context, event):
         """Take the pick under the cursor, or wait for a press on one."""
-        from ..editing import object_called
-        from ..modelled import standing_cell
-        from ..pick_handles import Handles
+        from ..modelling.editing import object_called
+        from ..modelling.modelled import standing_cell
+        from ..picking.pick_handles import Handles
 
         cell = standing_cell(context.scene)
         pressed = event.type == "LEFTMOUSE" and event.value == "PRESS"
@@ -91,7 +91,7 @@ class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
 
     def paint(self, context, frame):
         """The handles; the object as it would be with the pick at the cursor."""
-        from ..pick_drawing import draw_handles
+        from ..picking.pick_drawing import draw_handles
 
         aim = self.aim(context, context.area) if self._held is not None else None
         draw_handles(context, frame, self, self._handles, self._held, aim)
@@ -106,7 +106,7 @@ class MovePick(OnPicture, NeedsPose, bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Solve with the pick there."""
-        from ..editing import with_pick
+        from ..modelling.editing import with_pick
 
         name, pixel = name_of(context, self.name), [round(float(v), 3) for v in self.pixel_at]
         edited = change_model(

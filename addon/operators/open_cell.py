@@ -7,7 +7,7 @@ import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..cell_scene import look_through, open_scene, title_of
+from ..cell.cell_scene import look_through, open_scene, title_of
 from ..fields import endings_property
 from ..refusals import refuses
 

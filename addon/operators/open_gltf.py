@@ -6,7 +6,7 @@ from typing import ClassVar
 import bpy
 from bpy_extras.io_utils import ImportHelper
 
-from ..cell_scene import look_through, open_scene
+from ..cell.cell_scene import look_through, open_scene
 from ..fields import endings_property
 from ..refusals import refuses
 
@@ -26,7 +26,7 @@ class OpenGltf(bpy.types.Operator, ImportHelper):
         """Read, build, and look through the camera."""
         from pathlib import Path
 
-        from ..glb_cell import read_glb_cell
+        from ..modelling.glb_cell import read_glb_cell
 
         path = bpy.path.abspath(self.filepath)
         cell, lost = read_glb_cell(path)

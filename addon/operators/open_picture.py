@@ -7,8 +7,8 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
-from ..camera_inputs import stated_camera
-from ..cell_scene import look_through, open_scene
+from ..camera.camera_inputs import stated_camera
+from ..cell.cell_scene import look_through, open_scene
 from ..refusals import refuses
 
 

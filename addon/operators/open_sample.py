@@ -7,7 +7,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import EnumProperty
 
-from ..cell_scene import look_through, open_scene
+from ..cell.cell_scene import look_through, open_scene
 from ..refusals import refuses
 
 FOLDER = Path(__file__).resolve().parents[2] / "samples"

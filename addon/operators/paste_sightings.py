@@ -6,10 +6,10 @@ from typing import ClassVar
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from ..place_inputs import decimals
+from ..camera.place_inputs import decimals
+from ..camera.sightings import add_sightings, place_sightings
 from ..polls import NeedsCell
 from ..refusals import refuses
-from ..sightings import add_sightings, place_sightings
 
 
 class PasteSightings(NeedsCell, bpy.types.Operator):

@@ -6,9 +6,9 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
-from ..camera_view import hidden_names
-from ..model_changes import change_model, make_active
-from ..on_picture import OnPicture
+from ..modelling.model_changes import change_model, make_active
+from ..on_picture.camera_view import hidden_names
+from ..on_picture.on_picture import OnPicture
 from ..polls import NeedsPose
 from ..refusals import refuses, refuses_to_start
 
@@ -31,7 +31,7 @@ class PickReference(OnPicture, NeedsPose, bpy.types.Operator):
     @refuses_to_start
     def invoke(self, context, event):
         """Wait for the click."""
-        from ..modelled import standing_cell
+        from ..modelling.modelled import standing_cell
 
         self._cell, self._shown, self._axis = standing_cell(context.scene), None, False
         self._hidden = hidden_names(context.scene, context.space_data)
@@ -51,7 +51,7 @@ class PickReference(OnPicture, NeedsPose, bpy.types.Operator):
 
     def paint(self, context, frame):
         """What a click would choose."""
-        from ..reference_drawing import draw_shown
+        from ..overlay.reference_drawing import draw_shown
 
         shown = self._under(context, context.area)
         draw_shown(context, frame, self._cell.standing_camera(), shown, self)
@@ -69,9 +69,9 @@ class PickReference(OnPicture, NeedsPose, bpy.types.Operator):
         """Choose it, as one of the list or as a new one."""
         from ...core.reference import PendingReference
         from ...core.references.sources import FeatureOf
-        from ..editing import with_reference
-        from ..feature_picking import path_of
-        from ..modelled import free_name, standing_cell
+        from ..modelling.editing import with_reference
+        from ..modelling.modelled import free_name, standing_cell
+        from ..on_picture.feature_picking import path_of
 
         scene = context.scene
         cell = standing_cell(scene)
@@ -101,6 +101,6 @@ class PickReference(OnPicture, NeedsPose, bpy.types.Operator):
         return self._shown[1]
 
     def _at(self, pixel, reach):
-        from ..feature_picking import shown_at
+        from ..on_picture.feature_picking import shown_at
 
         return shown_at(self._cell, pixel, reach, axis=self._axis, hidden=self._hidden)

@@ -7,10 +7,10 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 
 from ..background_job import WorksInBackground
-from ..document import bare_cell, read_scene, show_objects, stored_report, write_scene
+from ..cell.document import bare_cell, read_scene, show_objects, stored_report, write_scene
 from ..polls import NeedsPose
 from ..preferences import settings
-from ..reviewing import Reviewed
+from ..review.reviewing import Reviewed
 
 # about so many parts of a picture are tried
 PARTS = 20
@@ -36,7 +36,7 @@ class Propose(Reviewed, WorksInBackground, NeedsPose, bpy.types.Operator):
 
     def prepare(self, context):
         """What is done in the background."""
-        from ..aligning import proposed
+        from ..review.aligning import proposed
 
         scene = context.scene
         on = self.on or bare_cell(scene).references[scene.monocell_cell.reference_index].name
@@ -45,13 +45,13 @@ class Propose(Reviewed, WorksInBackground, NeedsPose, bpy.types.Operator):
 
     def offered(self, context, result):
         """What may stand there; the doubtful wait for a click."""
-        from ..offer import offer_of_proposals
+        from ..review.offer import offer_of_proposals
 
         return offer_of_proposals(result, self.doubtful, settings(context).unit)
 
     def take(self, context, result, offer):
         """Add what is taken as objects like any other."""
-        from ..aligning import with_taken
+        from ..review.aligning import with_taken
 
         scene, taken = context.scene, offer.taken
         grown = with_taken(read_scene(scene), taken)

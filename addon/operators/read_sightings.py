@@ -7,11 +7,11 @@ from typing import ClassVar
 import bpy
 from bpy_extras.io_utils import ImportHelper
 
+from ..camera.place_inputs import decimals
+from ..camera.sightings import add_sightings
 from ..fields import endings_property
-from ..place_inputs import decimals
 from ..polls import NeedsCell
 from ..refusals import refuses
-from ..sightings import add_sightings
 
 
 class ReadSightings(NeedsCell, bpy.types.Operator, ImportHelper):

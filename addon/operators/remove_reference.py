@@ -6,7 +6,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
-from ..model_changes import change_model
+from ..modelling.model_changes import change_model
 from ..polls import NeedsCell
 from ..refusals import refuses
 
@@ -25,7 +25,7 @@ class RemoveReference(NeedsCell, bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Take it out."""
-        from ..editing import without_reference
+        from ..modelling.editing import without_reference
 
         stored = context.scene.monocell_cell
         name = self.name or stored.references[stored.reference_index].name

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import IntProperty
 
 from ..fields import object_property
-from ..model_changes import change_model, name_of
+from ..modelling.model_changes import change_model, name_of
 from ..polls import NeedsPose
 from ..refusals import refuses
 
@@ -31,7 +31,7 @@ class RemoveRelation(NeedsPose, bpy.types.Operator):
     def execute(self, context):
         """Solve again without it."""
         from ...core.errors import InvalidValue
-        from ..editing import object_called, with_relations
+        from ..modelling.editing import object_called, with_relations
 
         name = name_of(context, self.name)
 

@@ -5,9 +5,9 @@ from typing import ClassVar
 
 import bpy
 
+from ..camera.sightings import remove_sighting
 from ..polls import NeedsSighting
 from ..refusals import refuses
-from ..sightings import remove_sighting
 
 
 class RemoveSighting(NeedsSighting, bpy.types.Operator):

@@ -7,7 +7,7 @@ from typing import ClassVar
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from ..document import doubts_of
+from ..cell.document import doubts_of
 from ..fields import endings_property
 from ..polls import NeedsCell
 from ..refusals import refuses
@@ -32,7 +32,7 @@ class SaveCell(NeedsCell, bpy.types.Operator, ExportHelper):
     @refuses
     def execute(self, context):
         """Write it whole or not at all."""
-        from ..saving import save_scene
+        from ..cell.saving import save_scene
 
         path = Path(bpy.path.abspath(self.filepath))
         cell = save_scene(context.scene, path)

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 
 from ..fields import object_property, place_property
-from ..model_changes import active_object, change_model, name_of
+from ..modelling.model_changes import active_object, change_model, name_of
 from ..polls import NeedsCell
 from ..refusals import refuses
 
@@ -64,8 +64,8 @@ class SetMotion(NeedsCell, bpy.types.Operator):
     def invoke(self, context, event):
         """Ask, what it is now offered."""
         from ...core.errors import MonocellError
-        from ..editing import object_called
-        from ..modelled import standing_cell
+        from ..modelling.editing import object_called
+        from ..modelling.modelled import standing_cell
 
         try:
             thing = object_called(standing_cell(context.scene), name_of(context, self.name))
@@ -97,7 +97,7 @@ class SetMotion(NeedsCell, bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Write it down."""
-        from ..editing import with_motion
+        from ..modelling.editing import with_motion
 
         name, motion = name_of(context, self.name), self._motion()
         change_model(context.scene, lambda cell, sigma: with_motion(cell, name, motion))

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 
 from ..fields import length_property, object_property
-from ..model_changes import change_model, name_of
+from ..modelling.model_changes import change_model, name_of
 from ..polls import NeedsPose
 from ..refusals import refuses
 
@@ -32,8 +32,8 @@ class SetSize(NeedsPose, bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Solve again with it."""
-        from ..editing import with_size
-        from ..place_inputs import decimals
+        from ..camera.place_inputs import decimals
+        from ..modelling.editing import with_size
 
         name = name_of(context, self.name)
         value = float(decimals([self.metres])[0]) if self.known else None

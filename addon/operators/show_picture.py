@@ -6,7 +6,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
-from ..cell_scene import show_named_picture
+from ..cell.cell_scene import show_named_picture
 from ..polls import NeedsCell
 from ..refusals import refuses
 from ..waiting import waiting

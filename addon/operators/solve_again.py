@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty
 
 from ..background_job import WorksInBackground
-from ..document import read_scene, show_objects, stored_report, write_scene
+from ..cell.document import read_scene, show_objects, stored_report, write_scene
 from ..polls import NeedsPose
 
 

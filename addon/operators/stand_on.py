@@ -7,7 +7,7 @@ import bpy
 from bpy.props import StringProperty
 
 from ..fields import object_property
-from ..model_changes import change_model, name_of
+from ..modelling.model_changes import change_model, name_of
 from ..polls import NeedsPose
 from ..refusals import refuses
 
@@ -29,7 +29,7 @@ class StandOn(NeedsPose, bpy.types.Operator):
     @refuses
     def execute(self, context):
         """Solve again on it."""
-        from ..editing import object_called, with_relations
+        from ..modelling.editing import object_called, with_relations
 
         stored = context.scene.monocell_cell
         on = self.on or stored.references[stored.reference_index].name

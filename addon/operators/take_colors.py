@@ -6,7 +6,7 @@ from typing import ClassVar
 import bpy
 
 from ..fields import everything_property
-from ..looks_taken import TakesLooks
+from ..modelling.looks_taken import TakesLooks
 
 
 class TakeColors(TakesLooks, bpy.types.Operator):

@@ -38,7 +38,7 @@ def addon(extension, blender):
 
 @pytest.fixture
 def module(extension):
-    """A module of the extension by its path, `module("addon.document")`."""
+    """A module of the extension by its path, `module("addon.cell.document")`."""
     return lambda name: importlib.import_module(f"{extension}.{name}")
 
 

@@ -202,7 +202,7 @@ class Hand(PickMoves, VerbMoves, FileMoves, BlenderMoves):
 
     def cell(self):
         """The scene's cell, None where an object was edited out of its kind."""
-        errors, document = self.module("core.errors"), self.module("addon.document")
+        errors, document = self.module("core.errors"), self.module("addon.cell.document")
         try:
             return document.read_scene(self.scene) if self.stored.text else None
         except errors.MonocellError:

@@ -18,7 +18,7 @@ class PickMoves:
 
     def does_add_solid(self):
         kind = self.one_of(KINDS)
-        way = self.one_of(name for name, *_ in self.module("addon.pick_plans").WAYS[kind])
+        way = self.one_of(name for name, *_ in self.module("addon.picking.pick_plans").WAYS[kind])
         picks = self._clicked(kind, way)
         if picks is None:
             return
@@ -84,8 +84,8 @@ class PickMoves:
         cell = self.cell()
         if cell is None or cell.camera.camera_from_world is None:
             return None
-        plan = self.module("addon.pick_plans").plan_of(kind, way)
-        session = self.module("addon.pick_session").PickSession(
+        plan = self.module("addon.picking.pick_plans").plan_of(kind, way)
+        session = self.module("addon.picking.pick_session").PickSession(
             plan, cell.standing_camera(), cell.reference("floor") if _has_floor(cell) else None
         )
         pixels = list(self._outline(kind) + self.rng.uniform(-1, 1, 2) * self.rng.uniform(0, 2))

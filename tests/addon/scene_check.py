@@ -28,7 +28,7 @@ def check_scene(bpy, module, folder):
     _check_overlay(bpy, module)
     try:
         # saving by the operator makes the file the scene's own, and a check changes nothing
-        written = module("addon.document").read_scene(scene)
+        written = module("addon.cell.document").read_scene(scene)
         module("core.document.cell_file").write_cell(written, path)
     except module("core.errors").MonocellError as refusal:
         assert "\n" not in str(refusal), refusal
@@ -81,8 +81,8 @@ def _check_overlay(bpy, module):
     """All that would be drawn can be computed, and is finite."""
     scene, document, lines = (
         bpy.context.scene,
-        module("addon.document"),
-        module("addon.overlay_lines"),
+        module("addon.cell.document"),
+        module("addon.overlay.overlay_lines"),
     )
     cell, report = document.bare_cell(scene), document.stored_report(scene)
     stored = scene.monocell_cell
@@ -93,9 +93,13 @@ def _check_overlay(bpy, module):
     list(lines.sighting_labels(cell, report, look))
     if cell.camera.camera_from_world is not None:
         plane = document.active_plane(scene)
-        grid = None if plane is None else module("addon.plane_grid").plane_grid(cell.camera, plane)
+        grid = (
+            None
+            if plane is None
+            else module("addon.overlay.plane_grid").plane_grid(cell.camera, plane)
+        )
         strokes += [] if grid is None else list(lines.grid_strokes(grid, look))
-        wires = module("addon.object_lines")
+        wires = module("addon.overlay.object_lines")
         for ob in scene.objects:
             if module("scene.objects").is_modelled(ob):
                 wires._object_key(ob, True)

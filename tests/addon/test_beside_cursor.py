@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 from hypothesis import given
 from hypothesis import strategies as st
-from monocell.addon.beside_cursor import loupe_box, words_box
+from monocell.addon.on_picture.beside_cursor import loupe_box, words_box
 
 # a toolbar on the left, a sidebar on the right, a header above
 FREE = (60.0, 0.0, 1040.0, 800.0)

@@ -66,7 +66,7 @@ def test_numbers_that_are_typed_are_for_the_size_of_the_cell(addon, scene, tmp_p
 
 
 def test_a_calibration_goes_and_says_so_and_the_next_marks_the_objects(addon, module, scene):
-    steps = module("addon.steps")
+    steps = module("addon.panels.steps")
     addon.ops.monocell.calibrate()
     picks = json.dumps(bench_cell.box_picks())
     addon.ops.monocell.add_box("EXEC_DEFAULT", True, picks=picks)

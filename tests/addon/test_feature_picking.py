@@ -4,7 +4,7 @@ from pathlib import Path
 import bench_cell
 import numpy as np
 import pytest
-from monocell.addon.feature_picking import outline_of, path_of, shown_at
+from monocell.addon.on_picture.feature_picking import outline_of, path_of, shown_at
 from monocell.core import Pose
 from monocell.core.primitives import Cone, Prism, Sphere, Tube
 from monocell.core.shape.features import feature, feature_names

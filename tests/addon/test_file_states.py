@@ -45,7 +45,7 @@ def test_a_project_that_was_moved_as_a_whole_finds_its_pictures(addon, module, p
     scene = opened(addon, there / "bench.blend")
     assert scene.monocell_cell.folder == str(there)
     assert scene.monocell_cell.path == str(there / "bench.cell.json")
-    assert module("addon.steps").picture_step(scene).mark == "done"
+    assert module("addon.panels.steps").picture_step(scene).mark == "done"
     assert addon.ops.monocell.calibrate() == {"FINISHED"}
 
 
@@ -65,7 +65,7 @@ def test_a_blend_file_without_its_pictures_says_which_and_shows_them_still(
     shutil.move(project / "bench.blend", alone)
     shutil.rmtree(project)
     scene = opened(addon, alone / "bench.blend")
-    step = module("addon.steps").picture_step(scene)
+    step = module("addon.panels.steps").picture_step(scene)
     assert step.mark == "doubt"
     assert f"bench.png is no longer in {project}" in step.said
     image = scene.monocell_cell.camera.data.background_images[0].image

@@ -17,7 +17,7 @@ def intrinsics_of(bpy, tmp_path):
 
 
 def marks(module, scene):
-    steps = module("addon.steps")
+    steps = module("addon.panels.steps")
     of = (steps.picture_step, steps.camera_step, steps.model_step, steps.use_step)
     return [step(scene).mark for step in of]
 
@@ -29,7 +29,9 @@ def test_the_sample_opens_with_one_press_and_says_what_comes_next(addon, module)
     scene = addon.context.scene
     assert len(scene.monocell_cell.sightings) == 8
     assert marks(module, scene) == ["done", "next", "waiting", "waiting"]
-    assert module("addon.steps").camera_step(scene).said == "8 sightings are ready: calibrate."
+    assert (
+        module("addon.panels.steps").camera_step(scene).said == "8 sightings are ready: calibrate."
+    )
     # it is never written back into the extension
     assert scene.monocell_cell.path == ""
 
@@ -39,7 +41,7 @@ def test_the_sample_to_model_yourself_is_the_first_and_brings_no_picks(addon, mo
     stored = addon.context.scene.monocell_cell
     assert '"objects": []' in stored.text
     addon.ops.monocell.open_sample(sample="TABLE")
-    sketches = module("addon.document").bare_cell(addon.context.scene).sketches
+    sketches = module("addon.cell.document").bare_cell(addon.context.scene).sketches
     assert len(sketches) == 7
 
 
@@ -63,7 +65,7 @@ def test_the_steps_follow_the_work(addon, module, bench):
     picks = json.dumps(bench_cell.box_picks())
     addon.ops.monocell.add_box("EXEC_DEFAULT", True, picks=picks)
     assert marks(module, scene) == ["done", "done", "done", "next"]
-    assert module("addon.steps").use_step(scene).said == "1 object to export."
+    assert module("addon.panels.steps").use_step(scene).said == "1 object to export."
 
 
 def test_a_typed_camera_has_the_picture_s_size(addon, bench, tmp_path):
@@ -136,9 +138,9 @@ def test_pictures_that_were_moved_are_found_again(addon, module, tmp_path):
     with pytest.raises(RuntimeError, match="no picture of this cell is missing"):
         addon.ops.monocell.find_pictures(directory=str(tmp_path))
     here.rename(there)
-    assert module("addon.steps").picture_step(scene).mark == "doubt"
+    assert module("addon.panels.steps").picture_step(scene).mark == "doubt"
     with pytest.raises(RuntimeError, match="there is no such picture either"):
         addon.ops.monocell.find_pictures(directory=str(tmp_path))
     assert addon.ops.monocell.find_pictures(directory=str(there)) == {"FINISHED"}
-    assert module("addon.steps").picture_step(scene).mark == "done"
+    assert module("addon.panels.steps").picture_step(scene).mark == "done"
     assert addon.ops.monocell.calibrate() == {"FINISHED"}

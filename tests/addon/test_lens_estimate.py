@@ -43,7 +43,7 @@ def test_pictures_of_a_board_become_the_camera_of_the_picture_that_is_opened(add
 
 def test_the_estimate_tells_its_error_verdict_and_warnings(addon, module):
     estimate(addon)
-    lens = module("addon.lens_estimate")
+    lens = module("addon.camera.lens_estimate")
     found = lens.parse_estimate(addon.context.scene.monocell_lens.estimate)
     assert (found.verdict, found.used, found.pictures) == ("weak", 6, 6)
     assert abs(found.camera["fx"] - TRUTH.fx) < 4 * found.sigmas["fx"] < 4.0

@@ -19,7 +19,7 @@ def seen(addon, module, monkeypatch, tmp_path):
     # the first push starts the undo system, which a Blender without a window leaves off
     bpy.ops.ed.undo_push(message="a box")
     ops.add_cylinder("EXEC_DEFAULT", True, picks=json.dumps(bench_cell.drum_picks()))
-    object_lines = module("addon.object_lines")
+    object_lines = module("addon.overlay.object_lines")
     made = []
 
     class Recorded:
@@ -29,7 +29,7 @@ def seen(addon, module, monkeypatch, tmp_path):
             return ends
 
     monkeypatch.setattr(object_lines, "LineBatch", Recorded)
-    changes = module("addon.scene_changes").SceneChanges()
+    changes = module("addon.overlay.scene_changes").SceneChanges()
     changes.listen()
     held = object_lines.ObjectLines()
     look = module("addon.settings").DEFAULTS

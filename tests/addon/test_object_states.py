@@ -215,7 +215,7 @@ def test_the_list_shows_what_the_document_holds(addon, module, scene, tmp_path):
     objects = module("scene.objects")
     listed = [ob for ob in scene.objects if objects.is_modelled(ob)]
     assert sorted(ob.name for ob in listed) == sorted(things(addon, tmp_path))
-    assert module("addon.steps").count_objects(scene) == 2
+    assert module("addon.panels.steps").count_objects(scene) == 2
     for ob in listed:
         stored.object_index = scene.objects.find(ob.name)
         assert addon.context.view_layer.objects.active == ob

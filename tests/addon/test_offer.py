@@ -6,9 +6,9 @@ from dataclasses import replace
 import bench_cell
 import numpy as np
 import pytest
-from monocell.addon.aligning import with_taken
-from monocell.addon.offer import offer_of_aligned, offer_of_proposals
-from monocell.addon.offer_drawing import OfferFrames, color_of, rows_of
+from monocell.addon.review.aligning import with_taken
+from monocell.addon.review.offer import offer_of_aligned, offer_of_proposals
+from monocell.addon.review.offer_drawing import OfferFrames, color_of, rows_of
 from monocell.addon.settings import DEFAULTS
 from monocell.core.align.propose import Proposal
 from monocell.core.align.result import AlignedObject

@@ -214,7 +214,7 @@ def test_what_a_document_only_has_picks_of_is_kept_until_it_is_solved(addon, ben
 
 def test_a_moved_camera_is_noticed_and_put_back(addon, module, bench):
     scene = opened(addon, bench)
-    stands = module("addon.cell_scene").camera_stands
+    stands = module("addon.cell.cell_scene").camera_stands
     assert stands(scene)
     scene.camera.location.x += 0.01
     assert not stands(scene)
@@ -245,10 +245,10 @@ def test_what_the_user_deleted_is_made_again(addon, module, bench, tmp_path):
     scene = opened(addon, bench)
     addon.data.objects.remove(scene.camera)
     addon.data.collections.remove(scene.monocell_cell.collection)
-    assert not module("addon.cell_scene").camera_stands(scene)
+    assert not module("addon.cell.cell_scene").camera_stands(scene)
     addon.ops.monocell.look_through()
     add(addon, "box", bench_cell.box_picks())
-    assert module("addon.cell_scene").camera_stands(scene)
+    assert module("addon.cell.cell_scene").camera_stands(scene)
     assert [thing.name for thing in saved(addon, tmp_path / "x.cell.json").objects] == ["box"]
 
 

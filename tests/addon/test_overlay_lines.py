@@ -5,22 +5,22 @@ from types import SimpleNamespace
 import bench_cell
 import numpy as np
 import pytest
-from monocell.addon.drawing import GREEN, GREY, HALO, ORANGE, RED, WHITE, YELLOW, ends_of
-from monocell.addon.overlay_lines import (
-    joined,
-    looks_of,
-    object_strokes,
-    sighting_color,
-    sighting_labels,
-    sighting_strokes,
-)
-from monocell.addon.report import (
+from monocell.addon.camera.report import (
     AdvisedPlace,
     Report,
     SeenSighting,
     dump_report,
     parse_report,
     seen_of,
+)
+from monocell.addon.overlay.drawing import GREEN, GREY, HALO, ORANGE, RED, WHITE, YELLOW, ends_of
+from monocell.addon.overlay.overlay_lines import (
+    joined,
+    looks_of,
+    object_strokes,
+    sighting_color,
+    sighting_labels,
+    sighting_strokes,
 )
 from monocell.core.sighting import PointSighting
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from monocell.addon.pick_plan import corner_below
-from monocell.addon.pick_plans import (
+from monocell.addon.on_picture.picture_frame import PictureFrame
+from monocell.addon.picking.pick_plan import corner_below
+from monocell.addon.picking.pick_plans import (
     BOX,
     CYLINDER,
     FLOATING_SPHERE,
@@ -14,8 +15,7 @@ from monocell.addon.pick_plans import (
     PRISM,
     SPHERE,
 )
-from monocell.addon.pick_session import PickSession
-from monocell.addon.picture_frame import PictureFrame
+from monocell.addon.picking.pick_session import PickSession
 from monocell.core import Cylinder, Pose
 from monocell.core.picture.undistortion import undistorted_picture
 from monocell.core.primitives import Cone, Prism, Sphere

@@ -3,8 +3,8 @@ from dataclasses import replace
 
 import bench_cell
 import numpy as np
-from monocell.addon.loupe import ACROSS, enlarged
-from monocell.addon.plane_grid import plane_grid
+from monocell.addon.on_picture.loupe import ACROSS, enlarged
+from monocell.addon.overlay.plane_grid import plane_grid
 from monocell.core import ReferencePlane
 from monocell.core.modelling.reverse_mapping import points_on_plane_or_nan
 

@@ -49,8 +49,8 @@ def test_captions_labels_and_places_are_told_in_the_user_s_unit(tmp_path):
 
     import bench_cell
     import numpy as np
-    from monocell.addon.pick_plans import plan_of
-    from monocell.addon.pick_session import PickSession
+    from monocell.addon.picking.pick_plans import plan_of
+    from monocell.addon.picking.pick_session import PickSession
     from monocell.core.length_unit import UNITS
     from monocell.core.picture.overlay import caption
 

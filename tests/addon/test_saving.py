@@ -9,7 +9,7 @@ pytestmark = pytest.mark.blender
 
 
 def marked(module, scene):
-    steps = module("addon.steps")
+    steps = module("addon.panels.steps")
     return [step(scene).mark for step in (steps.picture_step, steps.camera_step)]
 
 
@@ -21,12 +21,12 @@ def test_saving_makes_the_file_the_scene_s_own(addon, module, bench, tmp_path):
     stored = scene.monocell_cell
     assert (stored.path, stored.folder) == (str(path), str(path.parent.resolve()))
     # the document and the scene name pictures alike, and both find them
-    assert read_cell(path).picture == module("addon.document").bare_cell(scene).picture
+    assert read_cell(path).picture == module("addon.cell.document").bare_cell(scene).picture
     assert stored.shown_picture == read_cell(path).picture
     assert marked(module, scene) == ["done", "done"]
     assert addon.ops.monocell.show_picture(picture=stored.sightings[1].picture) == {"FINISHED"}
     assert addon.ops.monocell.calibrate() == {"FINISHED"}
-    assert module("addon.looks_taken").document_of(scene) == path
+    assert module("addon.modelling.looks_taken").document_of(scene) == path
     addon.ops.monocell.save_cell(filepath=str(path))
     assert [s.status for s in stored.sightings] == ["used"] * 5
 
@@ -42,7 +42,7 @@ def test_textures_follow_a_document_that_is_saved_elsewhere(addon, module, tmp_p
     there = tmp_path / "there"
     there.mkdir()
     addon.ops.monocell.save_cell(filepath=str(there / "b.cell.json"))
-    (box,) = module("addon.document").read_scene(addon.context.scene).objects
+    (box,) = module("addon.cell.document").read_scene(addon.context.scene).objects
     assert box.appearance.textures
     for texture in box.appearance.textures.values():
         assert texture.picture.startswith("../")
@@ -64,7 +64,7 @@ def test_a_search_leaves_what_the_calibration_told(addon, module, bench):
     addon.ops.monocell.open_cell(filepath=str(bench))
     scene = addon.context.scene
     addon.ops.monocell.calibrate()
-    report = module("addon.document").stored_report
+    report = module("addon.cell.document").stored_report
     before = report(scene)
     addon.ops.monocell.find_all()
     after = report(scene)
@@ -75,15 +75,15 @@ def test_a_search_leaves_what_the_calibration_told(addon, module, bench):
     )
     assert [seen.status for seen in after.sightings] == ["found"] * 5
     assert after.searched
-    step = module("addon.steps").camera_step(scene)
+    step = module("addon.panels.steps").camera_step(scene)
     assert (step.mark, step.said) == ("next", "Balls were found again: calibrate to use them.")
     # the calibration after it is a new one
     addon.ops.monocell.calibrate()
     assert not report(scene).searched
-    assert module("addon.steps").camera_step(scene).mark == "done"
+    assert module("addon.panels.steps").camera_step(scene).mark == "done"
 
 
 def test_a_search_before_any_calibration_tells_of_none(addon, module, raw_bench):
     addon.ops.monocell.open_cell(filepath=str(raw_bench))
     addon.ops.monocell.find_all()
-    assert module("addon.document").stored_report(addon.context.scene).verdict == ""
+    assert module("addon.cell.document").stored_report(addon.context.scene).verdict == ""

@@ -22,7 +22,7 @@ PANELS = {
 @pytest.fixture
 def shown(addon, module):
     def names():
-        classes = {name: getattr(module(f"addon.{at}"), name) for name, at in PANELS.items()}
+        classes = {name: getattr(module(f"addon.panels.{at}"), name) for name, at in PANELS.items()}
         return {name for name, cls in classes.items() if cls.poll(addon.context)}
 
     return names
@@ -49,7 +49,10 @@ def test_the_object_s_panel_comes_with_the_object(addon, shown, bench):
 def test_the_calibration_is_told_in_one_line_in_the_user_s_unit(addon, module, bench):
     addon.ops.monocell.open_cell(filepath=str(bench))
     addon.ops.monocell.calibrate()
-    told, report = module("addon.panel_camera").verdict, module("addon.document").stored_report
+    told, report = (
+        module("addon.panels.panel_camera").verdict,
+        module("addon.cell.document").stored_report,
+    )
     first = told(report(addon.context.scene), "mm")
     assert first.endswith(" mm on floor") and ": ± " in first
     assert told(report(addon.context.scene), "in").endswith(" in on floor")
@@ -62,6 +65,6 @@ def test_a_lock_of_a_size_that_the_object_has_not_changes_nothing(addon, module,
     picks = json.dumps(bench_cell.drum_picks())
     addon.ops.monocell.add_cylinder("EXEC_DEFAULT", True, picks=picks)
     addon.context.scene.monocell_object.known_2 = True
-    (drum,) = module("addon.document").read_scene(addon.context.scene).objects
+    (drum,) = module("addon.cell.document").read_scene(addon.context.scene).objects
     assert drum.known == {}
     assert "Traceback" not in "".join(capfd.readouterr())

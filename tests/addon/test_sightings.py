@@ -148,7 +148,7 @@ def test_an_edited_number_keeps_the_digits_of_the_others(addon, scene, sightings
 
 def test_editing_after_a_calibration_asks_for_another(addon, module, scene):
     addon.ops.monocell.calibrate()
-    step = module("addon.steps").camera_step
+    step = module("addon.panels.steps").camera_step
     assert step(scene).mark == "done"
     scene.monocell_cell.sightings[0].center = (0.3, 0.3, 0.3)
     assert (step(scene).mark, step(scene).said[:17]) == ("doubt", "Sightings changed")
@@ -193,7 +193,7 @@ def read_back(addon, scene):
 
 def test_calibrating_tells_millimetres_and_where_to_hold_the_ball_next(addon, module, scene):
     addon.ops.monocell.calibrate()
-    report = module("addon.document").stored_report(scene)
+    report = module("addon.cell.document").stored_report(scene)
     assert report.surface == "floor"
     assert len(report.advice) == 3
     now = report.surface_millimetres

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from monocell.addon.pick_plans import BOX
-from monocell.addon.pick_session import PickSession
+from monocell.addon.picking.pick_plans import BOX
+from monocell.addon.picking.pick_session import PickSession
 
 CORNERS = bench_cell.CAMERA.project(bench_cell.BOX.corners_world())
 BASE = CORNERS[bench_cell.ROUND]
@@ -80,8 +80,8 @@ class Key:
 
 
 def test_both_rows_of_digits_type_and_no_digit_turns_the_view():
-    from monocell.addon.on_picture import VIEW_EVENTS
-    from monocell.addon.typed_size import KEYS, typed_key
+    from monocell.addon.on_picture.on_picture import VIEW_EVENTS
+    from monocell.addon.picking.typed_size import KEYS, typed_key
 
     assert [typed_key(Key(f"NUMPAD_{digit}")) for digit in range(10)] == list("0123456789")
     assert typed_key(Key("SEVEN")) == "7" and typed_key(Key("PERIOD")) == "."

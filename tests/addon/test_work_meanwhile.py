@@ -15,7 +15,7 @@ def work(addon, module, bench):
     """A review of a box whose work is done, its reports kept, and what it would do counted."""
     addon.ops.monocell.open_cell(filepath=str(bench))
     addon.ops.monocell.add_box(picks=json.dumps(bench_cell.box_picks()))
-    reviewed = module("addon.reviewing").Reviewed
+    reviewed = module("addon.review.reviewing").Reviewed
     background = module("addon.background_job").WorksInBackground
 
     class Work(reviewed, background):

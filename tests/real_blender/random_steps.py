@@ -86,7 +86,7 @@ def document(name):
     path = out / f"check_{name}.cell.json"
     try:
         module("core.document.cell_file").write_cell(
-            module("addon.document").read_scene(bpy.context.scene), path
+            module("addon.cell.document").read_scene(bpy.context.scene), path
         )
     except module("core.errors").MonocellError as refusal:
         return str(refusal)
