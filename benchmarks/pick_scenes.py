@@ -138,6 +138,22 @@ def on_curves(
     return pixels
 
 
+def on_side(
+    truth: Primitive, camera: Camera, rng: np.random.Generator, turn: float, count: int
+) -> list[np.ndarray]:
+    """`count` pixels spread over the quarter of the top rim about `turn` from the facing side."""
+    eye = truth.world_from_object.inverse().apply(camera.centre_world)
+    shares = (np.arange(count) + rng.uniform(0.0, 1.0, count)) / count - 0.5
+    angles = np.arctan2(eye[1], eye[0]) + turn + shares * np.pi / 2
+    radius, level = truth.sizes[0], truth.half_extent[2]
+    ring = np.column_stack([radius * np.cos(angles), radius * np.sin(angles)])
+    points = np.column_stack([ring, np.full(count, level)])
+    pixels = camera.project(truth.world_from_object.apply(points))
+    if eye[2] < level or not camera.intrinsics.contains(pixels).all():
+        raise NotSeen
+    return list(pixels)
+
+
 def round_picks(
     truth: Primitive, camera: Camera, rng: np.random.Generator, **counts: int
 ) -> dict[str, list]:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from monocell.core import Pose
@@ -19,6 +19,7 @@ from pick_scenes import (
     NotSeen,
     Task,
     box_picks,
+    on_side,
     prism_picks,
     random_camera,
     round_picks,
@@ -103,6 +104,13 @@ def _cylinder(rng: Rng, known: tuple[str, ...] = (), plane=FLOOR, **counts: int)
     camera = random_camera(rng)
     picks = round_picks(truth, camera, rng, **counts)
     return Task(camera, truth, picks, plane.name, known=known)
+
+
+def _top_sides(rng: Rng, *sides: tuple[float, int]) -> Task:
+    """Three of the rim, and of the top so many about each turn from the side facing the camera."""
+    task = _cylinder(rng, rim=3)
+    tops = [on_side(task.truth, task.camera, rng, turn, count) for turn, count in sides]
+    return replace(task, picks={**task.picks, "top": [p for top in tops for p in top]})
 
 
 def _lying(rng: Rng, **counts: int) -> Task:
@@ -231,6 +239,14 @@ WAYS = (
         "box: floating, all sizes known", lambda r: _free_box(r, ("size_x", "size_y", "size_z"), 6)
     ),
     Way("cylinder: three of rim, three of top", lambda r: _cylinder(r, rim=3, top=3)),
+    Way("cylinder: three of rim, top once in front", lambda r: _top_sides(r, (0.0, 1))),
+    Way("cylinder: three of rim, top twice in front", lambda r: _top_sides(r, (0.0, 2))),
+    Way("cylinder: three of rim, top thrice in front", lambda r: _top_sides(r, (0.0, 3))),
+    Way("cylinder: three of rim, top once at the back", lambda r: _top_sides(r, (np.pi, 1))),
+    Way(
+        "cylinder: three of rim, top in front and back",
+        lambda r: _top_sides(r, (0.0, 1), (np.pi, 1)),
+    ),
     Way(
         "cylinder: two sides, one of rim, two of top", lambda r: _cylinder(r, rim=1, top=2, sides=2)
     ),

@@ -67,7 +67,7 @@ CYLINDER = PickPlan(
         Stage(
             "top",
             ("top rim, on the side that faces the camera",),
-            "another point of the top rim",
+            "another point of the top rim, on its far side, which settles the height",
             ("height",),
         ),
     ),
@@ -122,7 +122,7 @@ TUBE = PickPlan(
         Stage(
             "top",
             ("outer rim of the top, on the side that faces the camera",),
-            "another point of the outer top rim",
+            "another point of the outer top rim, on its far side, which settles the height",
             ("height",),
         ),
         Stage("hole", ("rim of the hole",), "another point of the hole", ("inner_radius",)),

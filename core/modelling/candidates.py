@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arrays import Array
 from ..camera import Camera
 from ..errors import NotConverged, PickError
 from ..primitives import Primitive
@@ -17,21 +18,27 @@ from .model_fit import FittedObject, fit_model
 from .pick_equations import pick_observer
 from .pick_plan import PickPlan
 from .pick_visibility import hidden_picks, hidden_warnings
+from .rivals import doubt, far_picks
 from .starts.start import start
 
-# two fits whose chi squared differs by less than this are within the noise of each other
-WITHIN_NOISE = 4.0
+# two fits whose chi squared differs by less than this, three sigma, are within each other's noise
+WITHIN_NOISE = 9.0
 # fits that agree to this share of their sizes are one and the same
 SAME_SHARE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class Chosen:
-    """The object that fits best, the plan of its picks, and what is doubtful already."""
+    """The object that fits best, the plan of its picks, and what is doubtful already.
+
+    `doubt` (6 + P, K) are motions of one sigma each towards rivals, None without any; the object's
+    covariance holds them.
+    """
 
     fitted: FittedObject
     plan: PickPlan
     warnings: tuple[str, ...]
+    doubt: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +46,7 @@ class _Candidate:
     fitted: FittedObject
     chi_squared: float
     hidden: tuple[int, ...]
+    far: int
 
 
 def choose(
@@ -50,9 +58,10 @@ def choose(
 ) -> Chosen:
     """Fit every start of a sketch, held by what stands already, and choose.
 
-    Of those within the noise of the best, the one is taken that hides the fewest of its own picks;
-    the next is named as a rival. Raises PickError naming object and pick, and what `fit_model`
-    raises.
+    Of those within the noise of the best, the one is taken that hides the fewest of its own picks,
+    then that has the fewest of its top rim on the far side. Others that hide no more are its
+    rivals: the next is named, and the covariance reaches to all. Raises PickError naming object and
+    pick, and what `fit_model` raises.
     """
     starts = start(camera, sketch, references, things, pick_sigma_pixels)
     found, refusals = [], []
@@ -67,12 +76,22 @@ def choose(
     scale = found[0].fitted.noise_scale
     good = [c for c in found if c.chi_squared <= found[0].chi_squared + WITHIN_NOISE * scale**2]
     # between perfect fits the larger is taken: its top picks are on the side facing the camera
-    good.sort(key=lambda c: (len(c.hidden), round(c.chi_squared, 6), -_volume(c)))
+    good.sort(key=lambda c: (len(c.hidden), c.far, round(c.chi_squared, 6), -_volume(c)))
     best = good[0]
     rivals = [c for c in good[1:] if len(c.hidden) == len(best.hidden) and not _same(c, best)]
+    worse = [(c.fitted.thing, (c.chi_squared - best.chi_squared) / scale**2) for c in rivals]
+    towards = doubt(best.fitted.thing, worse)
     hidden = hidden_warnings(best.fitted.thing, camera, starts.plan)
     doubts = (*starts.warnings, *_rival_doubts(best, rivals), *hidden)
-    return Chosen(best.fitted, starts.plan, doubts)
+    return Chosen(_doubted(best.fitted, towards), starts.plan, doubts, towards)
+
+
+def _doubted(fitted: FittedObject, towards: Array | None) -> FittedObject:
+    covariance = fitted.thing.covariance
+    if towards is None or covariance is None:
+        return fitted
+    whole = replace(fitted.thing, covariance=covariance + towards @ towards.T)
+    return replace(fitted, thing=whole)
 
 
 def _fitted(
@@ -87,7 +106,8 @@ def _fitted(
         camera, references, [*others, thing], pick_observer({thing.name: plan}), [thing.name]
     )
     fitted = fit.objects[thing.name]
-    return _Candidate(fitted, fit.chi_squared, hidden_picks(fitted.thing, camera, plan))
+    hidden, far = hidden_picks(fitted.thing, camera, plan), far_picks(fitted.thing, camera, plan)
+    return _Candidate(fitted, fit.chi_squared, hidden, far)
 
 
 def _volume(one: _Candidate) -> float:
@@ -108,8 +128,14 @@ def _rival_doubts(best: _Candidate, rivals: list[_Candidate]) -> list[str]:
     thing, other = best.fitted.thing, rivals[0].fitted.thing
     return [
         f"{thing.name}: the picks fit two {thing.kind}s: {_sizes(thing)} (taken) and "
-        f"{_sizes(other)}; add a pick to tell them apart"
+        f"{_sizes(other)}; its +/- reaches to both; {_settling(best, rivals[0])}"
     ]
+
+
+def _settling(best: _Candidate, rival: _Candidate) -> str:
+    if best.far < rival.far:
+        return "add a pick to tell them apart: of the top rim, on its far side"
+    return "add a pick to tell them apart"
 
 
 def _sizes(thing: Primitive) -> str:

@@ -42,6 +42,23 @@ def spreads_of(
     return Spreads(follows, system.free @ root)
 
 
+def with_doubts(
+    spreads: Spreads, columns: Sequence[tuple[str, slice]], doubts: Mapping[str, Array]
+) -> Spreads:
+    """With motions of one sigma (6 + P, K) towards rivals of some objects; the group follows.
+
+    The others of the group move as they do on average where the picks' noise moves that one.
+    """
+    own = spreads.own
+    parts = []
+    for name, part in columns:
+        if name in doubts:
+            moved = own @ np.linalg.pinv(own[part], rcond=DUST) @ doubts[name]
+            moved[part] = doubts[name]
+            parts.append(moved)
+    return Spreads(spreads.by_noise, np.hstack([own, *parts])) if parts else spreads
+
+
 def noise_scale(chi_squared: float, spare: int) -> float:
     """How many times the stated noise the residuals show; 1 unless they clearly exceed it.
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from .fit_uncertainty import (
     noise_covariance_of,
     noise_scale,
     spreads_of,
+    with_doubts,
     without_dust,
 )
 from .group_fit import Fitted, Problem, Scene, fit_groups
@@ -39,6 +41,7 @@ Layout = tuple[tuple[Key, int], ...]
 
 # relations that are kept to within this (metres, or sines) are kept
 KEPT = 1e-6
+NO_DOUBTS: Mapping[str, Array] = MappingProxyType({})
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +79,13 @@ def fit_model(
     solve: Iterable[str],
     *,
     joint: bool = False,
+    doubts: Mapping[str, Array] = NO_DOUBTS,
 ) -> ModelFit:
     """Solve the objects named in `solve`, starting from `things`; the others stay as they are.
 
     Sizes in `known` are held, relations and `on` are kept exactly. Covariances join pick noise, the
-    camera's and the references' own, and what the objects inherit from each other.
+    camera's and the references' own, and what the objects inherit from each other. `doubts` are
+    motions (6 + P, K) of one sigma each by which an object may be another that its picks fit.
 
     Raises PickError for an object that its picks and relations leave open, NotConverged for
     relations that contradict each other, InvalidValue for a relation to what is not there, NoPose.
@@ -89,7 +94,7 @@ def fit_model(
     named = {t.name: _to_solve(t) if t.name in solved else t for t in things}
     wanted = [name for name in named if name in solved]
     holds = [h for name in wanted for h in holds_of(named[name], references, list(named))]
-    fitting = _Fitting(camera, references, named, observe, holds, wanted)
+    fitting = _Fitting(camera, references, named, observe, holds, wanted, doubts)
     return fitting.jointly() if joint else fitting.one_by_one()
 
 
@@ -110,6 +115,7 @@ class _Fitting:
     observe: Observe
     holds: list[Hold]
     wanted: list[str]
+    doubts: Mapping[str, Array]
 
     def one_by_one(self) -> ModelFit:
         things, done, chi_squared = dict(self.things), dict[str, FittedObject](), 0.0
@@ -118,7 +124,7 @@ class _Fitting:
         for level in in_order(self.wanted, self.holds):
             for groups, fitted, layout in self._level(level, things, sources):
                 for i, group in enumerate(groups):
-                    spreads = spreads_of(fitted.systems[i], group, things)
+                    spreads = self._spreads(fitted, i, group, things)
                     solved = self._solved(fitted, i, group, spreads, layout)
                     sources = _remembered(sources, solved, group, spreads, layout, things)
                     done |= solved
@@ -160,7 +166,7 @@ class _Fitting:
         noise_covariance = noise_covariance_of(fitted.systems, count)
         done: dict[str, FittedObject] = {}
         for i, group in enumerate(groups):
-            spreads = spreads_of(fitted.systems[i], group, self.things)
+            spreads = self._spreads(fitted, i, group, self.things)
             done |= self._solved(fitted, i, group, spreads, layout, noise_covariance)
         camera = fitted.scene.camera
         if CAMERA in spread:
@@ -195,6 +201,12 @@ class _Fitting:
             thing = replace(thing, covariance=without_dust(whole), by_camera=by_camera)
             done[name] = FittedObject(thing, fitted.observed[name], scale, fitted.settled)
         return done
+
+    def _spreads(
+        self, fitted: Fitted, i: int, group: Sequence[str], things: Mapping[str, Primitive]
+    ) -> Spreads:
+        spreads = spreads_of(fitted.systems[i], group, things)
+        return with_doubts(spreads, columns_of(group, things), self.doubts)
 
     def _keys(self, group: Sequence[str]) -> list[Key]:
         """All outside a group that it can be wrong with."""

@@ -188,6 +188,7 @@ class _Work:
     def _fit(self, *, joint: bool) -> ModelFit:
         self.cell, self.warnings = resolve_references(self.cell, self.sigma)
         plans = {name: chosen.plan for name, chosen in self.chosen.items()}
+        doubts = {n: chosen.doubt for n, chosen in self.chosen.items() if chosen.doubt is not None}
         things = [_by_feature(thing, self.cell) for thing in self.cell.objects]
         return fit_model(
             self.cell.standing_camera(),
@@ -196,6 +197,7 @@ class _Work:
             pick_observer(plans),
             list(plans),
             joint=joint,
+            doubts=doubts,
         )
 
     def _take(self, fit: ModelFit) -> None:

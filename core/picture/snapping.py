@@ -2,7 +2,8 @@
 """What a click was meant for: a picture and a pixel in, the corner or edge next to it out.
 
 Found on amounts of light, so that blur does not move an edge to its dark side, and only where it
-stands out from the noise round it.
+stands out from the noise round it. Where shadows, stains or other things come near, what is found
+may be theirs: a hand is then surer, and nothing is said.
 """
 
 from __future__ import annotations
@@ -21,6 +22,12 @@ BLUR = 1.0
 # what is read beyond the radius: the blur, the window of a corner, and the way that it may move
 MARGIN = 10
 CORNER_REACH, CORNER_HOLE, ROUNDS = 7.0, 2.5, 12
+# a corner that a smaller window puts elsewhere by more than this, pixels, is not one corner
+SMALL_REACH, MOST_APART = 4.5, 0.6
+# of all that is steep near it, this share belongs to edges that pass within so many pixels
+LEAST_THROUGH, THROUGH = 0.85, 2.0
+# of the least gradient worth snapping to: what is less is noise, too, and no other edge
+NOISE_SHARE = 0.5
 # a gradient worth snapping to, in sigmas of noise, of the strongest near, and at all
 LEAST_SIGMAS, LEAST_SHARE, LEAST_GRADIENT = 6.0, 0.2, 2e-3
 # a step of about a tenth of the light there: less is the grain of wood, a stain, a soft shadow
@@ -50,8 +57,10 @@ class Snap:
 def snapped(picture: Picture, pixel: Array, radius: float) -> Snap | None:
     """The corner nearest to a pixel (2,) within `radius` pixels, else the nearest edge, or None.
 
-    A corner is where edges of two directions meet: the point that all gradients round it are square
-    to (Foerstner 1987). An edge is where the gradient is steepest along its own direction.
+    None, too, where that is less sure than a click: the corner moves with the window that is looked
+    at, or other edges than its own are near. A corner is where edges of two directions meet: the
+    point that all gradients round it are square to (Foerstner 1987). An edge is where the gradient
+    is steepest along its own direction.
     """
     reach = positive(radius, "snapping radius")
     cut, left_top = _cut(picture, np.asarray(pixel, dtype=float), reach)
@@ -61,11 +70,12 @@ def snapped(picture: Picture, pixel: Array, radius: float) -> Snap | None:
     gx, gy = _gradients(cut)
     strength = np.hypot(gx, gy)
     least = _least_strength(cut, strength)
-    found = _corner(gx, gy, at, reach, least)
-    if found is not None:
-        return Snap(found + left_top, "corner")
+    corner = _corner(gx, gy, at, reach, least)
+    if corner is not None:
+        return Snap(corner + left_top, "corner") if _sure_corner(gx, gy, corner, least) else None
     edge = _edge(strength, gx, gy, at, reach, least)
-    return None if edge is None else Snap(edge + left_top, "edge")
+    sure = edge is not None and _through(gx, gy, edge, least) >= LEAST_THROUGH
+    return Snap(edge + left_top, "edge") if edge is not None and sure else None
 
 
 def _cut(picture: Picture, pixel: Array, reach: float) -> tuple[Array | None, Array]:
@@ -124,7 +134,26 @@ def _structure(gx: Array, gy: Array) -> tuple[Array, Array]:
     return half - root, half + root
 
 
-def _refined(gx: Array, gy: Array, place: Array) -> Array:
+def _sure_corner(gx: Array, gy: Array, corner: Array, least: float) -> bool:
+    small = _refined(gx, gy, corner, SMALL_REACH)
+    # a NaN, of what is no corner in the small, is not near either
+    near = float(np.linalg.norm(small - corner)) <= MOST_APART
+    return near and _through(gx, gy, corner, least) >= LEAST_THROUGH
+
+
+def _through(gx: Array, gy: Array, place: Array, least: float) -> float:
+    """The share of the squared gradients near a place, beyond noise, whose edges run through it."""
+    rows, columns = np.mgrid[: gx.shape[0], : gx.shape[1]]
+    u, v = columns - place[0], rows - place[1]
+    squared = u**2 + v**2
+    steep = gx**2 + gy**2 > (NOISE_SHARE * least) ** 2
+    asked = steep & (squared <= CORNER_REACH**2) & (squared >= CORNER_HOLE**2)
+    energy = (gx**2 + gy**2)[asked]
+    missed = np.abs(gx * u + gy * v)[asked] / np.maximum(np.sqrt(energy), 1e-12)
+    return float(energy[missed < THROUGH].sum() / max(float(energy.sum()), 1e-300))
+
+
+def _refined(gx: Array, gy: Array, place: Array, far: float = CORNER_REACH) -> Array:
     """The corner near a pixel: `sum g g^T (corner - q) = 0` over places q with gradients g.
 
     The innermost places, where blur rounds the corner, are not asked. NaN where it is none.
@@ -133,7 +162,7 @@ def _refined(gx: Array, gy: Array, place: Array) -> Array:
     corner = place
     for _ in range(ROUNDS):
         squared = (columns - corner[0]) ** 2 + (rows - corner[1]) ** 2
-        asked = (squared <= CORNER_REACH**2) & (squared >= CORNER_HOLE**2)
+        asked = (squared <= far**2) & (squared >= CORNER_HOLE**2)
         g = np.stack([gx[asked], gy[asked]], axis=1)
         q = np.stack([columns[asked], rows[asked]], axis=1)
         along = (g * q).sum(axis=1)

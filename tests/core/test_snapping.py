@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+from pathlib import Path
+
 import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from monocell.core.document.cell_file import read_cell
 from monocell.core.errors import InvalidValue
+from monocell.core.picture.pictures import read_picture
 from monocell.core.picture.snapping import snapped
 
+STACK = Path(__file__).resolve().parents[2] / "samples" / "03_stack"
 FINE = 8
 SIZE = 72
 DARK, MIDDLE, BRIGHT = 0.08, 0.35, 0.7
@@ -79,6 +84,35 @@ def test_an_edge_is_found_on_its_line_where_blur_does_not_move_it(offset, angle,
     assert abs((found.pixel - point) @ normal) < 0.06
     # straight on from the click
     assert abs((found.pixel - click) @ [-normal[1], normal[0]]) < 0.6
+
+
+def shadowed_foot(corner, apart):
+    """A dark corner on bright ground, and a shadow's edge that passes it `apart` pixels off."""
+    u, v = grid()
+    angle = np.mod(np.arctan2(v - corner[1], u - corner[0]) - 0.4, 2 * np.pi)
+    ground = np.where(v - corner[1] + 0.3 * (u - corner[0]) > apart, MIDDLE, BRIGHT)
+    return photographed(np.where(angle < 1.4, DARK, ground), 1.0)
+
+
+@pytest.mark.parametrize("apart", [-5.0, -4.0, -3.0, 3.0, 4.0, 5.0])
+@pytest.mark.parametrize("seed", range(4))
+def test_beside_a_shadow_s_edge_a_pick_is_not_taken_away_from_its_corner(apart, seed):
+    corner = np.array([36.2, 35.7])
+    click = corner + np.random.default_rng(seed).normal(0, 0.7, 2)
+    found = snapped(shadowed_foot(corner, apart), click, 4.0)
+    assert found is None or np.linalg.norm(found.pixel - corner) < 1.5
+
+
+def test_the_carton_s_foot_of_the_sample_is_not_snapped_into_its_shadow():
+    cell = read_cell(STACK / "truth.cell.json")
+    (carton,) = [thing for thing in cell.objects if thing.name == "carton"]
+    picture = read_picture(STACK / "cell.jpg")
+    foot = carton.corners_world()[:4]
+    away = np.linalg.norm(foot - cell.camera.centre_world, axis=1)
+    # the farthest is behind the carton
+    for corner in cell.camera.project(foot[np.argsort(away)[:3]]):
+        found = snapped(picture, corner, 4.0)
+        assert found is None or np.linalg.norm(found.pixel - corner) < 1.2
 
 
 def test_beyond_the_radius_nothing_is_found():
