@@ -54,14 +54,14 @@ class OnPicture:
     def enter(self, context, event):
         """Begin to draw and to follow the mouse; for an operator that is modal already."""
         from .aiming import Aiming
-        from .loupe import shown_pixels
+        from .shown_picture import view_pixels
 
         scene, self._mouse = context.scene, (event.mouse_x, event.mouse_y)
         self.settings = settings(context)
         self._area, self._scene = context.area.as_pointer(), scene.session_uid
         self._intrinsics = bare_cell(scene).camera.intrinsics
         self._aiming, self._aimed = Aiming.of(scene, context.space_data), None
-        self._shown_pixels = shown_pixels(scene) if self.settings.loupe else None
+        self._shown_pixels = view_pixels(scene) if self.settings.loupe else None
         self.cursor, self._turned, self._loupe = None, False, None
         self._follow(context, context.area, event)
         self._handle = bpy.types.SpaceView3D.draw_handler_add(
