@@ -136,10 +136,11 @@ class WorksInBackground:
             watch.stop()
         if event.type == "TIMER":
             state.share, state.name = watch.share, watch.name
-            told = "Cancelling ..." if state.cancel else f"{state.title}: {watch.name}"
+            told = f"{state.title}: {watch.name}"
             context.workspace.status_text_set(f"{told}   {100 * watch.share:.0f} %   Esc cancels")
             _redraw(context)
-        if self._job.running or event.type != "TIMER":
+        # what was told to stop is not waited for: it ends at its next step, and changes nothing
+        if event.type != "TIMER" or (self._job.running and not watch.stopped):
             return {"RUNNING_MODAL"} if event.type == "ESC" else {"PASS_THROUGH"}
         self._end(context)
         return self._ended(context, event)
@@ -163,10 +164,9 @@ class WorksInBackground:
 
     def _ended(self, context, event):
         try:
-            result = self._job.result()
             if self._job.watch.stopped:
-                # it had come to its end just before it could be told
                 raise Stopped
+            result = self._job.result()
             if self.state_of(context.scene) != self._begun_with:
                 raise InvalidValue("The cell was changed meanwhile: start again for it as it is")
             return self.arrived(context, event, result)
