@@ -3,6 +3,7 @@
 # make zip     the Blender extension, in dist/
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 OUT ?= out/demo
+JOBS ?= 2
 VENV := .venv
 RUN := $(VENV)/bin
 OPENCV := opencv-python-headless==4.11.0.86
@@ -16,8 +17,10 @@ BUILDER := $(VENV)/lib/python*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cl
 demo: $(VENV)/installed
 	$(RUN)/monocell demo $(OUT)
 
+# whole files side by side: windows mostly wait. The wheels first, or two would fetch them at once
 test: $(VENV)/installed lint
-	$(RUN)/python -m pytest
+	-$(MAKE) --no-print-directory wheels/downloaded
+	$(RUN)/python -m pytest -n $(JOBS) --dist loadfile
 
 lint: $(VENV)/installed
 	$(RUN)/ruff check .

@@ -9,16 +9,29 @@ pytestmark = pytest.mark.blender
 SCRIPT = """
 import bpy, sys
 import monocell
+
+def listening():
+    # every list of Blender's handlers, and what is in it
+    lists = {n: getattr(bpy.app.handlers, n) for n in dir(bpy.app.handlers)}
+    return {name: tuple(held) for name, held in lists.items() if isinstance(held, list)}
+
+listening_before = listening()
 before = set(sys.modules)
 names = set(dir(bpy.types)) | set(dir(bpy.types.Scene)) | set(dir(bpy.types.SpaceView3D))
 monocell.register()
 brought = {name for name in set(sys.modules) - before if name in ("cv2", "gpu", "pybullet")}
 assert not brought, brought
 assert hasattr(bpy.types.Scene, "monocell_cell")
+assert listening() != listening_before
 for _ in range(2):
     monocell.unregister()
     after = set(dir(bpy.types)) | set(dir(bpy.types.Scene)) | set(dir(bpy.types.SpaceView3D))
     assert after == names, after ^ names
+    assert listening() == listening_before
+    assert not dir(bpy.ops.monocell), dir(bpy.ops.monocell)
+    for menu in (bpy.types.TOPBAR_MT_file_import, bpy.types.TOPBAR_MT_file_export):
+        drawn = getattr(menu.draw, "_draw_funcs", ())
+        assert not [f for f in drawn if "monocell" in f.__module__], drawn
     left = {name for name in dir(bpy.types.WindowManager) if "monocell" in name}
     assert not left, left
     handlers = [c.bl_idname for c in bpy.types.FileHandler.__subclasses__() if c.is_registered]

@@ -42,7 +42,12 @@ except RuntimeError as refusal:
 ops.open_picture(picture=job["picture"], camera=job["camera"])
 save("from_picture")
 
-scene_attributes = {"monocell_cell", "monocell_inputs"}
+scene_attributes = {"monocell_cell", "monocell_inputs", "monocell_object", "monocell_lens"}
+handlers = {
+    name: held
+    for name in dir(bpy.app.handlers)
+    if isinstance(held := getattr(bpy.app.handlers, name), list)
+}
 addon_utils.disable(EXTENSION)
 found["left"] = [
     *(name for name in dir(bpy.types) if "monocell" in name.lower()),
@@ -50,6 +55,11 @@ found["left"] = [
     *(name for name in scene_attributes if hasattr(bpy.types.Scene, name)),
     *(name for name in dir(bpy.types.SpaceView3D) if "monocell" in name),
     *(name for name in dir(bpy.types.WindowManager) if "monocell" in name),
+    *(
+        name
+        for name, held in handlers.items()
+        if any("monocell" in str(h.__module__) for h in held)
+    ),
 ]
 addon_utils.enable(EXTENSION)
 found["again"] = hasattr(bpy.types.Scene, "monocell_cell")

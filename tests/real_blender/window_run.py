@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 
-def in_window(blender, folder, steps, job, timeout=240):
+def in_window(blender, folder, steps, job, timeout=600):
     """Run a script of steps in the window; the folder, what it found, and the finished process.
 
     MONOCELL_SCREENSHOTS names a folder that the screenshots are kept in.
