@@ -192,7 +192,7 @@ class OpensInBackground(WorksInBackground):
     sets `by_hand`.
     """
 
-    patience = 0.2
+    patience = 0.3
     # Blender's operators have no constructor of ours
     by_hand = False
 
