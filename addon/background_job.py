@@ -31,16 +31,16 @@ class Watch:
 
     def __init__(self, total: int) -> None:
         self.total, self.done, self.name = max(total, 1), 0, ""
-        self._stop = False
+        self.stopped = False
 
     def __call__(self, name: str) -> None:
-        if self._stop:
+        if self.stopped:
             raise Stopped
         self.done, self.name = self.done + 1, name
 
     def stop(self) -> None:
         """Let the work end at the next thing it comes to."""
-        self._stop = True
+        self.stopped = True
 
     @property
     def share(self) -> float:
@@ -61,6 +61,11 @@ class Job:
     def running(self) -> bool:
         return self._thread.is_alive()
 
+    def ended_within(self, seconds: float) -> bool:
+        """Whether the work has ended, after waiting so long for it at most."""
+        self._thread.join(seconds)
+        return not self.running
+
     def result(self) -> Any:
         """What the work returned, once it has ended."""
         self._thread.join()
@@ -79,8 +84,12 @@ class WorksInBackground:
     """A mixin for operators with `prepare(context)` and `finish(context, result)`.
 
     `prepare` returns a title, how many things the work comes to, and the work, a function of a
-    `Watch`. Called by a script the operator waits for it; pressed in a window it does not.
+    `Watch`. Called by a script the operator waits for it; pressed in a window it does not, but for
+    its `patience`: what ends sooner shows no progress.
     """
+
+    # seconds
+    patience = 0.0
 
     def execute(self, context):
         """Do it and wait."""
@@ -93,22 +102,26 @@ class WorksInBackground:
 
     def invoke(self, context, event):
         """Start it and come back."""
-        return self.start(context)
+        return self.start(context, event)
 
-    def start(self, context):
+    def start(self, context, event=None):
         """Begin the work, and look after it from then on."""
         state = context.window_manager.monocell_work
-        if state.title:
-            self.report({"ERROR"}, f"{state.title} is still running: wait, or cancel it")
-            return {"CANCELLED"}
+        if state.title and not self.patience:
+            return self._refused(state)
         try:
             title, total, work = self.prepare(context)
             self._begun_with = self.state_of(context.scene)
         except MonocellError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        state.title, state.share, state.name, state.cancel = title, 0.0, "", False
         self._job = Job(work, total)
+        if self.patience and self._job.ended_within(self.patience):
+            return self._ended(context, event)
+        if state.title:
+            self._job.watch.stop()
+            return self._refused(state)
+        state.title, state.share, state.name, state.cancel = title, 0.0, "", False
         self._timer = context.window_manager.event_timer_add(TICK, window=context.window)
         context.window_manager.modal_handler_add(self)
         _redraw(context)
@@ -123,10 +136,11 @@ class WorksInBackground:
             watch.stop()
         if event.type == "TIMER":
             state.share, state.name = watch.share, watch.name
-            told = "Cancelling ..." if state.cancel else f"{state.title}: {watch.name}"
+            told = f"{state.title}: {watch.name}"
             context.workspace.status_text_set(f"{told}   {100 * watch.share:.0f} %   Esc cancels")
             _redraw(context)
-        if self._job.running or event.type != "TIMER":
+        # what was told to stop is not waited for: it ends at its next step, and changes nothing
+        if event.type != "TIMER" or (self._job.running and not watch.stopped):
             return {"RUNNING_MODAL"} if event.type == "ESC" else {"PASS_THROUGH"}
         self._end(context)
         return self._ended(context, event)
@@ -144,12 +158,15 @@ class WorksInBackground:
         """What follows when the work is done in a window."""
         return self.finish(context, result)
 
+    def _refused(self, state):
+        self.report({"ERROR"}, f"{state.title} is still running: wait, or cancel it")
+        return {"CANCELLED"}
+
     def _ended(self, context, event):
         try:
-            result = self._job.result()
-            if context.window_manager.monocell_work.cancel:
-                # it had come to its end just before it could be told
+            if self._job.watch.stopped:
                 raise Stopped
+            result = self._job.result()
             if self.state_of(context.scene) != self._begun_with:
                 raise InvalidValue("The cell was changed meanwhile: start again for it as it is")
             return self.arrived(context, event, result)
@@ -166,6 +183,24 @@ class WorksInBackground:
         for workspace in bpy.data.workspaces:
             workspace.status_text_set(None)
         _redraw(context)
+
+
+class OpensInBackground(WorksInBackground):
+    """The same for what is often done at once, and for what is chosen in a dialog or file browser.
+
+    Those call `execute`, and that must not freeze the window: an `invoke` that asks for something
+    sets `by_hand`.
+    """
+
+    patience = 0.3
+    # Blender's operators have no constructor of ours
+    by_hand = False
+
+    def execute(self, context):
+        """Start where it was chosen by hand; a script waits."""
+        if self.by_hand and not self.options.is_repeat:
+            return self.start(context)
+        return super().execute(context)
 
 
 def _redraw(context):

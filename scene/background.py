@@ -6,11 +6,10 @@ from __future__ import annotations
 from typing import Any
 
 import bpy
-import numpy as np
 from numpy.typing import NDArray
 
 from ..core.intrinsics import Intrinsics
-from ..core.picture.undistortion import undistorted_picture
+from ..core.picture.plate import Plate, plate_of
 
 NAME = "monocell background"
 
@@ -20,20 +19,30 @@ def show_background(
 ) -> Any:
     """Show a picture as `core.pictures.read_picture` gives it behind the camera's view.
 
-    That is (H, W, 3) blue, green, red, 8 or 16 bits, as it came from the lens.
-
-    What is shown is the undistorted picture, so that straight edges meet straight models. It is
-    stretched over the camera's frame, which has the same K, and packed into the .blend. A second
-    call replaces the first. Returns the bpy image. Raises PictureError for another size.
+    That is (H, W, 3) blue, green, red, 8 or 16 bits, as it came from the lens; the rest is as for
+    `show_plate`. Raises PictureError for another size.
     """
-    image = _fill_image(_image_of(camera_object), undistorted_picture(picture, intrinsics))
-    background = _background_of(camera_object, image)
+    return show_plate(camera_object, plate_of(NAME, picture, intrinsics), alpha=alpha)
+
+
+def show_plate(camera_object: Any, plate: Plate, *, alpha: float = 1.0) -> Any:
+    """Show an undistorted picture behind the camera's view, so straight edges meet straight models.
+
+    It is stretched over the camera's frame, which has the same K, and packed into the .blend. A
+    second call replaces the first. Returns the bpy image.
+    """
+    old, image = _image_of(camera_object), _packed_image(plate)
+    background = _background_of(camera_object, old)
     background.image, background.source = image, "IMAGE"
     background.alpha, background.display_depth = alpha, "BACK"
     # the frame has the picture's shape, pixel aspect included: nothing is cropped or barred
     background.frame_method = "STRETCH"
     background.show_background_image = True
     camera_object.data.show_background_images = True
+    # a copy of the camera may still show it
+    if old is not None and not old.users:
+        bpy.data.images.remove(old)
+        image.name = NAME
     return image
 
 
@@ -44,24 +53,18 @@ def _image_of(camera_object: Any) -> Any | None:
     return None
 
 
-def _background_of(camera_object: Any, image: Any) -> Any:
+def _background_of(camera_object: Any, image: Any | None) -> Any:
     backgrounds = camera_object.data.background_images
     for background in backgrounds:
-        if background.image == image:
+        if image is not None and background.image == image:
             return background
     return backgrounds.new()
 
 
-def _fill_image(image: Any | None, picture: NDArray[Any]) -> Any:
-    height, width = picture.shape[:2]
-    if image is None:
-        image = bpy.data.images.new(NAME, width, height, alpha=False)
-        image[NAME] = True
-    elif tuple(image.size) != (width, height):
-        image.scale(width, height)
-    rows = np.ones((height, width, 4), np.float32)
-    rows[:, :, :3] = picture[::-1, :, ::-1] / np.float32(np.iinfo(picture.dtype).max)
-    image.pixels.foreach_set(rows.ravel())
-    image.update()
-    image.pack()
+def _packed_image(plate: Plate) -> Any:
+    """A Blender image that holds the plate's bytes; Blender decodes them when it first draws."""
+    image = bpy.data.images.new(NAME, 1, 1, alpha=False)
+    image[NAME] = True
+    image.pack(data=plate.png, data_len=len(plate.png))
+    image.source = "FILE"
     return image

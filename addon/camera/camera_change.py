@@ -15,30 +15,28 @@ from ..cell.document import read_scene, write_scene
 SOLVED_BEFORE = "The camera changed since the objects were solved: press Solve All."
 
 
-def change_camera(scene: Any, camera: Camera) -> str:
-    """Let the cell have another camera; what came of the old one in words, empty where it is same.
+def with_other_camera(cell: Cell, camera: Camera) -> Cell | None:
+    """The cell with another camera, None where it has nothing to gain from it.
 
-    The pose was found through the old lens, and goes with it unless the new camera brings its own;
-    so do the outlines. The picture is undistorted anew. Objects stay as they are, marked as old
-    where they have picks to be solved from.
-
-    Raises InvalidValue for a camera of another size than the cell's pictures, PictureError for a
-    picture that can't be read; the scene is then as it was.
+    The pose was found through the old lens, and goes with it unless the new camera brings its own.
+    Raises InvalidValue for a camera of another size than the cell's pictures.
     """
-    from ...core.picture.pictures import read_picture_told
-
-    cell, shown = read_scene(scene), scene.monocell_cell.shown_picture
     _refuse_other_size(cell, camera)
-    if same_camera(cell.camera, camera):
-        return ""
-    picture, said = None, ()
-    if shown:
-        picture, said = read_picture_told(cell.path_of(shown), camera.intrinsics)
+    return None if same_camera(cell.camera, camera) else _with_camera(cell, camera)
+
+
+def change_camera(scene: Any, camera: Camera, plate: Any) -> str:
+    """Let the scene's cell have another camera; what came of the old one in words.
+
+    Besides the pose the outlines go. `plate` is the shown picture, undistorted anew, None without.
+    Objects stay as they are, marked as old where they have picks to be solved from.
+    """
+    cell = read_scene(scene)
     posed = cell.camera.camera_from_world is not None
     write_scene(scene, _with_camera(cell, camera))
     put_camera(scene)
-    if picture is not None:
-        show_picture(scene, shown, picture, said)
+    if plate is not None:
+        show_picture(scene, plate)
     mark_objects(scene, cell)
     inner = camera.intrinsics
     told = f"Focal length {inner.fx:.1f}, {inner.fy:.1f} px"

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import radians, tan
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from ...core.camera import Camera
@@ -17,19 +18,29 @@ from ...core.intrinsics import Intrinsics
 LEAST_DEGREES, MOST_DEGREES = 0.5, 170.0
 
 
-def stated_camera(inputs: Any, picture: Path) -> Camera:
-    """The camera of the scene's inputs, for a picture's size.
+# what is typed, and for which a picture's size is needed
+TYPED = (
+    *("camera_source", "focal_x", "focal_y", "field_degrees"),
+    *("centred", "centre_x", "centre_y", "lens_model", "coefficients"),
+)
 
-    Raises DocumentError and InvalidValue for a file or numbers that are no camera, PictureError for
-    a picture that can't be read.
+
+def stated_camera(inputs: Any, picture: Path) -> Callable[[], Camera]:
+    """What gives the camera of the scene's inputs, for a picture's size, without asking Blender.
+
+    It may read the whole picture for its size, and be left to a thread. Raises DocumentError and
+    InvalidValue, at once or then, for a file or numbers that are no camera, PictureError for a
+    picture that can't be read.
     """
-    return camera_for(inputs, lambda: _size(picture))
+    camera = camera_for(inputs)
+    return lambda: camera(lambda: _size(picture))
 
 
-def camera_for(inputs: Any, size: Callable[[], tuple[int, int]]) -> Camera:
-    """The camera of the scene's inputs; typed numbers are for pictures of that size in pixels.
+def camera_for(inputs: Any) -> Callable[[Callable[[], tuple[int, int]]], Camera]:
+    """The camera of the scene's inputs for pictures of a size, asked for where it is needed.
 
-    Raises DocumentError and InvalidValue for a file or numbers that are no camera.
+    Raises DocumentError and InvalidValue, at once or when called, for a file or numbers that are no
+    camera.
     """
     import bpy
 
@@ -38,18 +49,15 @@ def camera_for(inputs: Any, size: Callable[[], tuple[int, int]]) -> Camera:
             raise DocumentError("no camera file chosen: choose one, or type the camera's numbers")
         from ...core.document.camera_file import read_camera
 
-        return read_camera(bpy.path.abspath(inputs.camera))
+        known = read_camera(bpy.path.abspath(inputs.camera))
+        return lambda size: known
     if inputs.camera_source == "BOARD":
         from .lens_estimate import estimated_camera
 
-        return estimated_camera(inputs.id_data.monocell_lens.estimate)
-    width, height = size()
-    cx, cy = inputs.centre_x, inputs.centre_y
-    if inputs.centred:
-        cx, cy = (width - 1) / 2, (height - 1) / 2
-    fx, fy = _focal(inputs, width)
-    lens = Distortion(inputs.lens_model, parsed_coefficients(inputs.coefficients))
-    return Camera(Intrinsics(width, height, fx, fy, cx, cy, lens))
+        estimated = estimated_camera(inputs.id_data.monocell_lens.estimate)
+        return lambda size: estimated
+    typed = SimpleNamespace(**{name: getattr(inputs, name) for name in TYPED})
+    return lambda size: _typed_camera(typed, *size())
 
 
 def parsed_coefficients(text: str) -> list[float]:
@@ -61,6 +69,15 @@ def parsed_coefficients(text: str) -> list[float]:
         except ValueError:
             raise InvalidValue(f"lens coefficients: {word!r:.20} is no number") from None
     return numbers
+
+
+def _typed_camera(inputs: Any, width: int, height: int) -> Camera:
+    cx, cy = inputs.centre_x, inputs.centre_y
+    if inputs.centred:
+        cx, cy = (width - 1) / 2, (height - 1) / 2
+    fx, fy = _focal(inputs, width)
+    lens = Distortion(inputs.lens_model, parsed_coefficients(inputs.coefficients))
+    return Camera(Intrinsics(width, height, fx, fy, cx, cy, lens))
 
 
 def _focal(inputs: Any, width: int) -> tuple[float, float]:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import Any
@@ -88,37 +88,37 @@ def named_from(cell: Cell, picture: str, folder: Path | None = None) -> str:
         return str(path.resolve())
 
 
-def rename_pictures(scene: Any, folder: Path) -> tuple[int, tuple[str, ...]]:
-    """Name the pictures that are missing by files of the same name in `folder` or below it.
+def missing_pictures(cell: Cell) -> tuple[str, ...]:
+    """The names of the pictures that are not there. Raises PictureError when none is missing."""
+    named = {s.picture for s in cell.sightings} | ({cell.picture} if cell.picture else set())
+    missing = tuple(sorted(name for name in named if not cell.path_of(name).is_file()))
+    if not missing:
+        raise PictureError("no picture of this cell is missing")
+    return missing
 
-    Returns how many were found, and the names of those that still are missing. Raises PictureError
-    when none is missing, when none is there, and for one that is not of the camera's size.
+
+def found_pictures(
+    cell: Cell, missing: Sequence[str], folder: Path, watch: Callable[[str], None]
+) -> dict[str, Path]:
+    """Files of the missing pictures' names in `folder` or below it; `watch` is told each.
+
+    It asks nothing of Blender. Raises PictureError when none is there, and for one that is not of
+    the camera's size.
     """
     from ...core.picture.pictures import read_picture
 
-    cell = bare_cell(scene)
-    named = {s.picture for s in cell.sightings} | ({cell.picture} if cell.picture else set())
-    missing = sorted(name for name in named if not cell.path_of(name).is_file())
-    if not missing:
-        raise PictureError("no picture of this cell is missing")
     there = {name: path for name in missing if (path := _found_in(folder, name)) is not None}
     if not there:
         raise PictureError(f"{folder / Path(missing[0]).name}: there is no such picture either")
     for path in there.values():
+        watch(f"reading {path.name}")
         read_picture(path, cell.camera.intrinsics)
-    _name_pictures(scene, cell, folder, there)
-    return len(there), tuple(name for name in missing if name not in there)
+    return there
 
 
-def _found_in(folder: Path, name: str) -> Path | None:
-    """Where a folder has a picture: by the end of its old path, or by its own name alone."""
-    parts = PurePath(name).parts
-    places = (folder.joinpath(*parts[i:]) for i in range(len(parts)) if parts[i] != "..")
-    return next((path for path in places if path.is_file()), None)
-
-
-def _name_pictures(scene: Any, cell: Cell, folder: Path, there: Mapping[str, Path]) -> None:
+def rename_pictures(scene: Any, folder: Path, there: Mapping[str, Path]) -> None:
     """Let the document's names start at `folder` from now on: its old one may be gone."""
+    cell = bare_cell(scene)
     moved = replace(cell, folder=folder.resolve())
 
     def new(name: str) -> str:
@@ -130,6 +130,13 @@ def _name_pictures(scene: Any, cell: Cell, folder: Path, there: Mapping[str, Pat
     shown = new(stored.shown_picture) if stored.shown_picture else ""
     write_scene(scene, replace(moved, sightings=sightings, picture=picture), report)
     stored.shown_picture = shown
+
+
+def _found_in(folder: Path, name: str) -> Path | None:
+    """Where a folder has a picture: by the end of its old path, or by its own name alone."""
+    parts = PurePath(name).parts
+    places = (folder.joinpath(*parts[i:]) for i in range(len(parts)) if parts[i] != "..")
+    return next((path for path in places if path.is_file()), None)
 
 
 def _write(scene: Any, sightings: Iterable[Sighting], kept: Iterable[int | None]) -> None:

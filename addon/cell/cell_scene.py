@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -27,26 +27,24 @@ PROBES_CAMERA = np.array([[x, y, z] for x in (-0.4, 0, 0.4) for y in (-0.3, 0.3)
 # where a camera is put that has no pose yet: like someone standing at the cell's corner
 FIRST_DIRECTION = np.array([1.0, -1.3, 0.9])
 LEAST_DISTANCE = 1.5
+# what `first_plate` tells of, and that Blender shows it
+PLATE_STEPS = 4
 LENGTH_UNITS = {"mm": "MILLIMETERS", "cm": "CENTIMETERS", "m": "METERS", "in": "INCHES"}
 
 
-def open_scene(context: Any, cell: Cell, title: str) -> Any:
+def open_scene(context: Any, cell: Cell, plate: Any | None, title: str) -> Any:
     """Make a scene of `cell` and show it in the window; the user's own scenes are left alone.
 
-    A refusal (PictureError, InvalidValue) changes nothing.
+    `plate` is what is shown behind the view, as `first_plate` reads it. A refusal (PictureError,
+    InvalidValue) changes nothing.
     Returns the scene.
     """
-    from ...core.picture.pictures import read_picture_told
-
-    name, picture, told = shown_first(cell), None, ()
     with waiting(context), _new_scene(title) as scene:
-        if name is not None:
-            picture, told = read_picture_told(cell.path_of(name), cell.camera.intrinsics)
         write_scene(scene, cell)
         _measure_in(scene, settings(context).unit)
         put_camera(scene)
-        if picture is not None:
-            show_picture(scene, name, picture, told)
+        if plate is not None:
+            show_picture(scene, plate)
         for missing in show_objects(scene, cell):
             raise PictureError(missing)
     context.window.scene = scene
@@ -60,44 +58,36 @@ def _measure_in(scene: Any, unit: str) -> None:
     measured.length_unit = LENGTH_UNITS[unit]
 
 
-def shown_first(cell: Cell) -> str | None:
-    """The picture to show behind the view: the cell's own, or that of its first sighting."""
-    if cell.picture is not None:
-        return cell.picture
-    return cell.sightings[0].picture if cell.sightings else None
+def first_plate(cell: Cell, watch: Callable[[str], None]) -> Any | None:
+    """The `Plate` to show first: of the cell's own picture, or of its first sighting's.
 
-
-def show_picture(scene: Any, name: str, picture: Any, told: tuple[str, ...] = ()) -> None:
-    """Show a picture (H, W, 3), undistorted, behind the camera view. Raises PictureError.
-
-    `told` is what is said of it while it is shown.
+    It asks nothing of Blender. Raises PictureError.
     """
-    from ...scene.background import show_background
+    from ...core.picture.plate import read_plate
 
-    show_background(_camera_of(scene), picture, bare_cell(scene).camera.intrinsics)
-    scene.monocell_cell.shown_picture = name
-    scene.monocell_cell.shown_told = "; ".join(told)
-
-
-def show_named_picture(scene: Any, name: str) -> None:
-    """Show a picture of the cell behind the view, if it is not there already.
-
-    Raises PictureError.
-    """
-    from ...core.picture.pictures import read_picture_told
-
-    if scene.monocell_cell.shown_picture != name:
-        cell = bare_cell(scene)
-        picture, told = read_picture_told(cell.path_of(name), cell.camera.intrinsics)
-        show_picture(scene, name, picture, told)
+    name = cell.picture
+    if name is None and cell.sightings:
+        name = cell.sightings[0].picture
+    return None if name is None else read_plate(cell, name, watch)
 
 
-def show_picture_again(scene: Any) -> None:
-    """Show the picture anew where it went with a camera that was deleted. Raises PictureError."""
+def show_picture(scene: Any, plate: Any) -> None:
+    """Show a `Plate` of the scene's cell behind the camera view."""
+    from ...scene.background import show_plate
+
+    image = show_plate(_camera_of(scene), plate)
+    # Blender decodes it when it is first asked: here, under the wait cursor, not while it draws
+    tuple(image.size)
+    scene.monocell_cell.shown_picture = plate.name
+    scene.monocell_cell.shown_told = "; ".join(plate.told)
+
+
+def needs_picture_again(scene: Any) -> bool:
+    """Whether the shown picture went with a camera that was deleted."""
     stored = scene.monocell_cell
-    if stored.shown_picture and not stored.camera.data.background_images:
-        name, stored.shown_picture = stored.shown_picture, ""
-        show_named_picture(scene, name)
+    if not stored.shown_picture:
+        return False
+    return stored.camera is None or not stored.camera.data.background_images
 
 
 def put_camera(scene: Any) -> None:

@@ -12,12 +12,13 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.camera import Camera
 from ...core.errors import MonocellError
-from ...core.picture.pictures import Picture, read_picture
+from ...core.picture.pictures import Picture
 from ...core.picture.snapping import snapped
 from ...core.picture.wireframe import wireframe
 from ...core.primitives import Primitive
 from ..cell.document import bare_cell, read_scene
 from .camera_view import hidden_names
+from .shown_picture import shown_picture
 
 # pixels of the picture
 FARTHEST_SNAP = 4.0
@@ -46,7 +47,7 @@ class Aiming:
         """The picture that the scene shows, and the corners of the objects that `space` shows."""
         cell, hidden = bare_cell(scene), hidden_names(scene, space)
         seen = [thing for thing in _objects(scene) if thing.name not in hidden]
-        return Aiming(_shown(scene, cell), modelled_corners(cell.camera, seen))
+        return Aiming(shown_picture(scene), modelled_corners(cell.camera, seen))
 
     def aimed(self, pixel: Array, radius: float) -> Aim:
         """A picture's corner within `radius` pixels, else a modelled one, else an edge.
@@ -79,15 +80,6 @@ def modelled_corners(camera: Camera, things: Sequence[Primitive]) -> Array:
     rays = pinhole.intrinsics.rays(np.concatenate(ends))
     pixels = camera.intrinsics.project(rays)
     return pixels[np.isfinite(pixels).all(axis=1)]
-
-
-def _shown(scene: Any, cell: Any) -> Picture | None:
-    name = scene.monocell_cell.shown_picture
-    try:
-        return read_picture(cell.path_of(name), cell.camera.intrinsics) if name else None
-    except MonocellError:
-        # a picture that was moved is still shown, but can't be measured
-        return None
 
 
 def _objects(scene: Any) -> Sequence[Primitive]:

@@ -15,19 +15,6 @@ from .beside_cursor import Box, loupe_box
 ACROSS = 23
 
 
-def shown_pixels(scene: Any) -> Array | None:
-    """What lies behind the camera view, (H, W, 3) sRGB from 0 to 1, top row first, or None."""
-    camera = scene.monocell_cell.camera
-    backgrounds = camera.data.background_images if camera is not None else ()
-    image = next((b.image for b in backgrounds if b.image is not None), None)
-    if image is None or not image.size[0]:
-        return None
-    width, height = image.size
-    flat = np.empty(width * height * 4, np.float32)
-    image.pixels.foreach_get(flat)
-    return flat.reshape(height, width, 4)[::-1, :, :3]
-
-
 class Loupe:
     """Where the loupe stands in the region, and what it maps to it."""
 
@@ -45,7 +32,7 @@ class Loupe:
         """View pixels (N, 2) to region points, `centre` (2,) being in the middle."""
         return self.middle + (np.asarray(view_pixels) - centre) * [self.zoom, -self.zoom]
 
-    def draw(self, picture: Array, centre: Array, lines: list[tuple[Array, Any]], scale: float):
+    def draw(self, picture: Any, centre: Array, lines: list[tuple[Array, Any]], scale: float):
         """Draw the picture round `centre` (2,), view pixels, with lines of the view over it."""
         import gpu
 
@@ -72,10 +59,11 @@ class Loupe:
         draw_lines(cross, WHITE, 1.0, scale)
 
 
-def enlarged(picture: Array, centre: Array, middle: Array, zoom: float) -> tuple[Array, Array]:
+def enlarged(picture: Any, centre: Array, middle: Array, zoom: float) -> tuple[Array, Array]:
     """Corners (N, 4, 2) of each enlarged pixel in the region, and their colours (N, 3).
 
-    They end at a square of ACROSS pixels round `centre`; beside the picture there are none.
+    They end at a square of ACROSS pixels round `centre`; beside the picture there are none. The
+    picture is an array (H, W, 3) or `ViewPixels`.
     """
     half = ACROSS / 2
     first, last = np.floor(centre - half + 0.5), np.ceil(centre + half - 0.5)
@@ -87,7 +75,11 @@ def enlarged(picture: Array, centre: Array, middle: Array, zoom: float) -> tuple
     high = np.minimum(np.stack([u, v], 1) + 0.5 - centre, half)
     x = middle[0] + zoom * np.stack([low[:, 0], high[:, 0], high[:, 0], low[:, 0]], axis=1)
     y = middle[1] - zoom * np.stack([low[:, 1], low[:, 1], high[:, 1], high[:, 1]], axis=1)
-    return np.stack([x, y], axis=2), picture[v, u]
+    corners = np.stack([x, y], axis=2)
+    if not len(corners):
+        return corners, np.zeros((0, 3))
+    part = picture[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    return corners, part.reshape(-1, 3)
 
 
 def _quads(corners: Array, colors: Array) -> None:

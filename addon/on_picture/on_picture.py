@@ -54,14 +54,13 @@ class OnPicture:
     def enter(self, context, event):
         """Begin to draw and to follow the mouse; for an operator that is modal already."""
         from .aiming import Aiming
-        from .loupe import shown_pixels
 
         scene, self._mouse = context.scene, (event.mouse_x, event.mouse_y)
         self.settings = settings(context)
         self._area, self._scene = context.area.as_pointer(), scene.session_uid
         self._intrinsics = bare_cell(scene).camera.intrinsics
-        self._aiming, self._aimed = Aiming.of(scene, context.space_data), None
-        self._shown_pixels = shown_pixels(scene) if self.settings.loupe else None
+        self._aiming = Aiming.of(scene, context.space_data) if self.snaps else None
+        self._aimed = None
         self.cursor, self._turned, self._loupe = None, False, None
         self._follow(context, context.area, event)
         self._handle = bpy.types.SpaceView3D.draw_handler_add(
@@ -166,14 +165,18 @@ class OnPicture:
 
     def paint_loupe(self, context, centre, lines):
         """The picture's pixels round `centre` (2,) of the view, enlarged, with lines over them."""
-        if self._shown_pixels is None:
-            return
         from .loupe import Loupe
+        from .shown_picture import view_pixels
+
+        # read once and kept, whoever asks
+        pixels = view_pixels(context.scene) if self.settings.loupe else None
+        if pixels is None:
+            return
 
         scale, free = context.preferences.system.ui_scale, free_part(context.area, context.region)
         loupe = Loupe(self.cursor, free, self.settings.loupe_zoom, scale)
         self._loupe = loupe.box
-        loupe.draw(self._shown_pixels, centre, lines, scale)
+        loupe.draw(pixels, centre, lines, scale)
 
     def paint_words(self, context, rows):
         """Words and their colours beside the cursor, where no sidebar and no loupe is."""

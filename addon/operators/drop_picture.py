@@ -7,13 +7,13 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
+from ..background_job import OpensInBackground
 from ..camera.camera_inputs import stated_camera
 from ..fields import files_property, folder_property
-from ..refusals import refuses
-from .open_picture import open_picture
+from .open_picture import opened, opening
 
 
-class DropPicture(bpy.types.Operator):
+class DropPicture(OpensInBackground, bpy.types.Operator):
     """Start a new cell from the dropped picture, or the first by name of several"""
 
     bl_idname = "monocell.drop_picture"
@@ -32,6 +32,7 @@ class DropPicture(bpy.types.Operator):
 
     def invoke(self, context, event):
         """Ask which camera took it."""
+        self.by_hand = True
         names = sorted(file.name for file in self.files if file.name)
         if names:
             self.filepath = str(Path(self.directory) / names[0])
@@ -48,12 +49,18 @@ class DropPicture(bpy.types.Operator):
             self.layout.label(text=told, icon="INFO")
         camera_inputs(self.layout, context)
 
-    @refuses
-    def execute(self, context):
-        """Open it with the camera that was stated."""
+    def state_of(self, scene):
+        """A scene of its own is made, whatever happens to others meanwhile."""
+
+    def prepare(self, context):
+        """What is done in the background, with the camera that was stated."""
         from ...core.errors import PictureError
 
         if not self.filepath:
             raise PictureError("no picture was dropped: drop one on the view")
         file = Path(bpy.path.abspath(self.filepath)).resolve()
-        return open_picture(self, context, file, stated_camera(context.scene.monocell_inputs, file))
+        return opening(context, file, stated_camera(context.scene.monocell_inputs, file))
+
+    def finish(self, context, result):
+        """Build, and look through the camera."""
+        return opened(self, context, result)

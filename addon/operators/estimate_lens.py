@@ -6,11 +6,11 @@ from typing import ClassVar
 
 import bpy
 
-from ..background_job import WorksInBackground
+from ..background_job import OpensInBackground
 from ..fields import files_property, folder_property, shows_property
 
 
-class EstimateLens(WorksInBackground, bpy.types.Operator):
+class EstimateLens(OpensInBackground, bpy.types.Operator):
     """Choose three or more pictures of the board, held at angles and up to the picture's rim"""
 
     bl_idname = "monocell.estimate_lens"
@@ -24,8 +24,7 @@ class EstimateLens(WorksInBackground, bpy.types.Operator):
 
     def invoke(self, context, event):
         """Let the pictures be chosen that were not dropped; the board is asked for beside them."""
-        # Blender's file browser and dialog call execute, and that must not freeze the window
-        self._chosen_by_hand = True
+        self.by_hand = True
         if self.files:
             return context.window_manager.invoke_props_dialog(self)
         picture, cell = context.scene.monocell_inputs.picture, context.scene.monocell_cell.folder
@@ -33,12 +32,6 @@ class EstimateLens(WorksInBackground, bpy.types.Operator):
         self.directory = self.directory or f"{folder}/"
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
-
-    def execute(self, context):
-        """Start where they were chosen by hand; a script waits."""
-        if getattr(self, "_chosen_by_hand", False):
-            return self.start(context)
-        return super().execute(context)
 
     def draw(self, context):
         """Blender's call: the board beside the files."""

@@ -2,6 +2,7 @@
 """Export the scene's cell as glTF, or in any other format."""
 
 from pathlib import Path
+from time import monotonic
 from typing import ClassVar
 
 import bpy
@@ -14,6 +15,10 @@ from ..cell.document import doubts_of, read_scene
 from ..fields import endings_property
 from ..polls import NeedsCell
 from ..refusals import refuses
+from ..waiting import waiting
+
+# a shorter wait is none, seconds
+FELT = 0.5
 
 
 def format_of(ending):
@@ -86,17 +91,26 @@ class ExportCell(NeedsCell, bpy.types.Operator, ExportHelper):
         """Write it whole or not at all; the ending of the name tells the format."""
         from ...scene.export import export_cell
 
+        began = monotonic()
         path = bpy.path.abspath(self.filepath)
         self.format = format_of(known_ending(path))
-        cell = read_scene(context.scene)
-        warnings = (*export_cell(cell, path), *doubts_of(context.scene))
+        # Blender's exporters run on its own thread: a hand sees at least that they do
+        with waiting(context):
+            cell = read_scene(context.scene)
+            warnings = (*export_cell(cell, path), *doubts_of(context.scene))
         for warning in warnings:
             self.report({"WARNING"}, warning)
         open_ones = [sketch.name for sketch in cell.sketches]
         if open_ones:
             self.report({"WARNING"}, f"{', '.join(open_ones)}: not solved yet, so not in the file")
-        self.report({"INFO"}, f"{Path(path)}: {len(cell.objects)} objects exported")
+        told = f"{Path(path)}: {len(cell.objects)} objects exported"
+        self.report({"INFO"}, told + lasting(monotonic() - began))
         return {"FINISHED"}
+
+
+def lasting(seconds):
+    """Words on how long a wait was, where it was one."""
+    return f" in {seconds:.1f} s" if seconds > FELT else ""
 
 
 def _lines(told):

@@ -30,7 +30,7 @@ class OpenGltf(bpy.types.Operator, ImportHelper):
 
         path = bpy.path.abspath(self.filepath)
         cell, lost = read_glb_cell(path)
-        scene = open_scene(context, cell, Path(path).stem)
+        scene = open_scene(context, cell, None, Path(path).stem)
         look_through(context)
         self.report({"INFO"}, f"{scene.name}: {len(cell.objects)} objects")
         for warning in lost:

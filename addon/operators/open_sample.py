@@ -7,8 +7,9 @@ from typing import ClassVar
 import bpy
 from bpy.props import EnumProperty
 
-from ..cell.cell_scene import look_through, open_scene
-from ..refusals import refuses
+from ..background_job import OpensInBackground
+from ..cell.cell_scene import PLATE_STEPS, look_through, open_scene
+from .open_cell import read_with_plate
 
 FOLDER = Path(__file__).resolve().parents[2] / "samples"
 DOCUMENTS = {"STACK": "03_stack/stack.cell.json", "TABLE": "01_table/table.cell.json"}
@@ -29,7 +30,7 @@ SAMPLES = (
 )
 
 
-class OpenSample(bpy.types.Operator):
+class OpenSample(OpensInBackground, bpy.types.Operator):
     """Open a sample cell: pictures of a ball in a robot's hand, and things to model"""
 
     bl_idname = "monocell.open_sample"
@@ -45,13 +46,18 @@ class OpenSample(bpy.types.Operator):
         """Blender's question for the tooltip: that of the sample itself."""
         return next(meaning for name, _, meaning in SAMPLES if name == properties.sample)
 
-    @refuses
-    def execute(self, context):
-        """Read, build, and look through the camera; it is saved elsewhere, under a new name."""
-        from ...core.document.cell_file import read_cell
+    def state_of(self, scene):
+        """A scene of its own is made, whatever happens to others meanwhile."""
 
-        cell = read_cell(FOLDER / DOCUMENTS[self.sample])
-        open_scene(context, cell, "Sample cell")
+    def prepare(self, context):
+        """What is done in the background."""
+        path = FOLDER / DOCUMENTS[self.sample]
+        return "Opening", PLATE_STEPS, lambda watch: read_with_plate(path, watch)
+
+    def finish(self, context, result):
+        """Build, and look through the camera; it is saved elsewhere, under a new name."""
+        cell, plate = result
+        open_scene(context, cell, plate, "Sample cell")
         look_through(context)
         self.report({"INFO"}, f"{len(cell.sightings)} ball sightings: press Calibrate")
         return {"FINISHED"}

@@ -6,13 +6,14 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
-from ..cell.cell_scene import show_named_picture
+from ..background_job import OpensInBackground
+from ..cell.cell_scene import PLATE_STEPS, show_picture
+from ..cell.document import bare_cell
 from ..polls import NeedsCell
-from ..refusals import refuses
 from ..waiting import waiting
 
 
-class ShowPicture(NeedsCell, bpy.types.Operator):
+class ShowPicture(OpensInBackground, NeedsCell, bpy.types.Operator):
     """Show this picture behind the camera view"""
 
     bl_idname = "monocell.show_picture"
@@ -21,9 +22,23 @@ class ShowPicture(NeedsCell, bpy.types.Operator):
 
     picture: StringProperty(name="Picture", description="Its name as the document has it")
 
-    @refuses
-    def execute(self, context):
-        """Read the picture, then undistort and show it."""
-        with waiting(context):
-            show_named_picture(context.scene, self.picture)
+    def prepare(self, context):
+        """What is done in the background."""
+        scene = context.scene
+        if scene.monocell_cell.shown_picture == self.picture:
+            return "Showing", PLATE_STEPS, lambda watch: None
+        return showing(bare_cell(scene), self.picture)
+
+    def finish(self, context, plate):
+        """Put it behind the view, if it is not there already."""
+        if plate is not None:
+            with waiting(context):
+                show_picture(context.scene, plate)
         return {"FINISHED"}
+
+
+def showing(cell, name):
+    """The work that reads a picture of the cell. It raises PictureError."""
+    from ...core.picture.plate import read_plate
+
+    return "Showing", PLATE_STEPS, lambda watch: read_plate(cell, name, watch)

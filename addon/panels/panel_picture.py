@@ -15,7 +15,7 @@ from ..operators.open_cell import OpenCell
 from ..operators.open_picture import OpenPicture
 from ..operators.open_sample import SAMPLES, OpenSample
 from .panel_lens import camera_inputs
-from .panel_parts import CellPanel, next_thing, numbers, paragraph, standing
+from .panel_parts import CellPanel, draw_work, next_thing, numbers, paragraph, standing
 from .steps import picture_step
 
 SAMPLE_ICONS = {"STACK": "OUTLINER_OB_CAMERA", "TABLE": "FILE_3D"}
@@ -53,6 +53,11 @@ def _draw_start(layout, context):
     layout.prop(inputs, "picture", text="", placeholder="Picture")
     camera_inputs(layout, context)
     stated = {"FILE": inputs.camera, "BOARD": context.scene.monocell_lens.estimate}
+    if context.window_manager.monocell_work.title:
+        # the board's own fields show it already
+        if inputs.camera_source != "BOARD":
+            draw_work(layout.row(align=True), context)
+        return
     ready = layout.row()
     ready.enabled = bool(inputs.picture and stated.get(inputs.camera_source, True))
     opened = ready.operator(OpenPicture.bl_idname, icon="IMAGE_DATA")

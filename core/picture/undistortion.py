@@ -39,6 +39,22 @@ def undistorted_picture(picture: NDArray[Any], intrinsics: Intrinsics) -> NDArra
     return _remapped(picture, place, cv2.INTER_CUBIC)
 
 
+def undistorted_window(
+    picture: NDArray[Any], intrinsics: Intrinsics, window: tuple[int, int, int, int]
+) -> NDArray[Any]:
+    """`undistorted_picture` of `window` (x, y, width, height) alone, (height, width, 3).
+
+    Raises PictureError when the size is not the camera's.
+    """
+    _check_size(picture, intrinsics)
+    x, y, width, height = window
+    if intrinsics.distortion.model == "none":
+        return picture[y : y + height, x : x + width].copy()
+    imaged = _imaged(intrinsics, x + np.arange(width) * 1.0, y + np.arange(height) * 1.0)
+    place = np.nan_to_num(imaged, nan=-1e4).astype(np.float32)
+    return _remapped(picture, place, cv2.INTER_CUBIC)
+
+
 def view_map(intrinsics: Intrinsics) -> NDArray[np.float32]:
     """Where the lens images each pixel of its undistorted view, (H, W, 2); NaN where nowhere.
 

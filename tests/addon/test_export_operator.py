@@ -79,3 +79,8 @@ def test_every_entry_of_the_menu_is_a_format_with_a_tooltip(addon, module, bench
     assert cls.description(addon.context, Properties) == (
         f"Export objects and camera: {FORMATS['.stl']}"
     )
+
+
+def test_a_wait_that_is_felt_is_told_with_its_length(addon, module):
+    lasting = module("addon.operators.export_gltf").lasting
+    assert [lasting(0.2), lasting(0.6), lasting(12.34)] == ["", " in 0.6 s", " in 12.3 s"]

@@ -21,7 +21,7 @@ def work(addon, module, bench):
     class Work(reviewed, background):
         def __init__(self):
             self.told, self.arrivals = [], 0
-            self._job = SimpleNamespace(result=lambda: None)
+            self._job = SimpleNamespace(result=lambda: None, watch=SimpleNamespace(stopped=False))
             self._begun_with = self.state_of(addon.context.scene)
 
         def report(self, level, text):

@@ -71,7 +71,7 @@ def steps():
 
     stored().sighting_index = 2
     in_view(bpy.ops.monocell.drag_window, "INVOKE_DEFAULT")
-    yield from settle()
+    yield from worked()
     left, top, right, below = job["window"]
     yield from drag((left, top), (right, below))
     yield from shot("5_window")

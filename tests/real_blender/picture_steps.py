@@ -93,6 +93,7 @@ def steps():
     # two pictures at once: the first by name starts the cell
     names = [{"name": name} for name in ("second.png", "first.png")]
     yield from agreed(ops.drop_picture, directory=job["folder"], files=names)
+    yield from worked()
     found["started"] = scene().monocell_cell.shown_picture
     found["open"] = handlers_here()
     yield from shot("2_opened")
@@ -116,7 +117,7 @@ def steps():
         directory=job["folder"],
         files=[{"name": "cell.cell.json"}],
     )
-    yield from settle()
+    yield from worked()
     found["dropped"] = scene().name
 
 
