@@ -61,7 +61,8 @@ def somewhere():
     """A window place: often a corner of something on the picture, else anywhere in the view."""
     chance, (_, area, region) = rng.random(), view()
     camera = bpy.context.scene.camera
-    if chance < 0.6 and camera is not None and camera.type == "CAMERA":
+    through = area.spaces.active.region_3d.view_perspective == "CAMERA"
+    if chance < 0.6 and through and camera is not None and camera.type == "CAMERA":
         u, v = rng.choice(job["pixels"])
         x, y = place_of((u + rng.gauss(0, 1), v + rng.gauss(0, 1)))
         return min(max(x, 0), job["window"][0] - 1), min(max(y, 0), job["window"][1] - 1)
