@@ -42,7 +42,7 @@ def prior_root(
     if stated is not None:
         back = np.linalg.pinv(basis)
         known = back @ stated @ back.T
-        # inv(TRUSTED^2 known + LEAST_PIXELS^2 inv(seen)): a bore that no outline shows has no inverse
+        # inv(TRUSTED^2 known + LEAST_PIXELS^2 inv(seen)), where no outline may show a bore
         believed = seen @ np.linalg.inv(TRUSTED**2 * known @ seen + LEAST_PIXELS**2 * np.eye(count))
         information += (believed + believed.T) / 2
     root: Array = np.linalg.inv(np.linalg.cholesky(information)).T
