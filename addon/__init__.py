@@ -7,7 +7,7 @@ def register():
     import bpy
 
     from . import keymap, menus, properties, tools
-    from .cell import file_events
+    from .cell import file_events, undo_events
     from .overlay import overlay
 
     properties.register()
@@ -16,6 +16,7 @@ def register():
     menus.register()
     overlay.register()
     file_events.register()
+    undo_events.register()
     keymap.register()
     tools.register()
 
@@ -25,11 +26,12 @@ def unregister():
     import bpy
 
     from . import keymap, menus, properties, tools
-    from .cell import file_events
+    from .cell import file_events, undo_events
     from .overlay import overlay
 
     tools.unregister()
     keymap.unregister()
+    undo_events.unregister()
     file_events.unregister()
     overlay.unregister()
     menus.unregister()

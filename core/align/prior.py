@@ -35,14 +35,16 @@ def prior_root(
     by = ((hulls[1:] - hulls[0]) / STEP).reshape(count, -1)
     extent = float(np.linalg.norm(np.ptp(hulls[0], axis=0)))
     sigma = float(np.hypot(REACH_SHARE * reach_pixels, EXTENT_SHARE * extent))
-    information = by @ by.T / (by.shape[1] / 2) / sigma**2
+    seen = by @ by.T / (by.shape[1] / 2)
+    information = seen / sigma**2
     sizes = basis[6:] / (SIZE_SHARE * np.maximum(np.abs(solid.parameters), 1e-3))[:, None]
     information += sizes.T @ sizes + basis[:3].T @ basis[:3] / TURN**2
     if stated is not None:
         back = np.linalg.pinv(basis)
         known = back @ stated @ back.T
-        least = LEAST_PIXELS**2 * np.linalg.inv(by @ by.T / (by.shape[1] / 2))
-        information += np.linalg.inv(TRUSTED**2 * known + least)
+        # inv(TRUSTED^2 known + LEAST_PIXELS^2 inv(seen)), where no outline may show a bore
+        believed = seen @ np.linalg.inv(TRUSTED**2 * known @ seen + LEAST_PIXELS**2 * np.eye(count))
+        information += (believed + believed.T) / 2
     root: Array = np.linalg.inv(np.linalg.cholesky(information)).T
     return root
 

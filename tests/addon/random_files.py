@@ -50,15 +50,6 @@ class FileMoves:
 
     does_open_picture.often = 2
 
-    def does_change_camera(self):
-        self.press("change_camera")
-
-    def does_estimate_lens(self):
-        files = [{"name": f"ball_{i}.png"} for i in range(int(self.rng.integers(0, 2)))]
-        self.press("estimate_lens", directory=str(self.folder), files=files)
-
-    does_estimate_lens.often = 1
-
     def does_save_and_open_document(self):
         """A document that was saved opens as what it was."""
         before = self.check()

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from random_blender import BlenderMoves
+from random_camera import CameraMoves
 from random_files import FileMoves
 from random_picks import PickMoves
 from random_verbs import VerbMoves
@@ -85,7 +86,7 @@ def _place(failure):
     return lines[-1]
 
 
-class Hand(PickMoves, VerbMoves, FileMoves, BlenderMoves):
+class Hand(PickMoves, VerbMoves, CameraMoves, FileMoves, BlenderMoves):
     """One session, from a fresh file on.
 
     `bench` is a folder with a cell document and its pictures, `told` returns what was printed
@@ -96,7 +97,7 @@ class Hand(PickMoves, VerbMoves, FileMoves, BlenderMoves):
         self.bpy, self.module, self.bench, self.folder = bpy, module, bench, folder
         self.folder.mkdir(parents=True, exist_ok=True)
         self.ops, self.told = bpy.ops.monocell, told
-        self.refusals, self.made, self.checked = [], 0, 0
+        self.refusals, self.made, self.checked, self.finished = [], 0, 0, set()
         self.log = (folder / REACHED).open("w")
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
         self.module("addon.preferences").settings(bpy.context)
@@ -136,7 +137,10 @@ class Hand(PickMoves, VerbMoves, FileMoves, BlenderMoves):
         """One of our operators as the interface calls it: refused in one line, or done."""
         self._note(f"    # {verb} {properties}\n")
         try:
-            return getattr(self.ops, verb)("EXEC_DEFAULT", True, **properties)
+            done = getattr(self.ops, verb)("EXEC_DEFAULT", True, **properties)
+            if done == {"FINISHED"}:
+                self.finished.add(verb)
+            return done
         except RuntimeError as refusal:
             told = str(refusal).strip()
             assert REFUSAL.fullmatch(told), f"{verb}: {told}"

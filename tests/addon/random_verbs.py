@@ -69,8 +69,10 @@ class VerbMoves:
         self.press("read_sightings", filepath=str(self.one_of([path, self.bench / "none.csv"])))
 
     def does_add_pictures(self):
-        files = [{"name": f"ball_{i}.png"} for i in range(int(self.rng.integers(0, 3)))]
-        positions = "; ".join("0.1 0.2 0.3" for _ in range(int(self.rng.integers(0, 3))))
+        count = int(self.rng.integers(0, 5))
+        files = [{"name": f"ball_{i}.png"} for i in range(count)]
+        places = bench_cell.CENTRES[: self.one_of([count, count, 1])]
+        positions = "\n".join(" ".join(str(v) for v in place) for place in places)
         self.press("add_pictures", directory=str(self.bench), files=files, positions=positions)
 
     def does_add_sighting(self):
@@ -224,8 +226,8 @@ class VerbMoves:
     does_align.often = 1
 
     def does_propose(self):
-        # on the floor it takes a minute: chequered, it has a thousand outlines
-        self.press("propose", on="nothing", doubtful=self.chance(0.5))
+        on = self.one_of(["", "floor", "floor", "nothing"])
+        self.press("propose", on=on, doubtful=self.chance(0.5))
 
     does_propose.often = 1
 

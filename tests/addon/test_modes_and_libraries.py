@@ -4,6 +4,7 @@
 import json
 
 import bench_cell
+import numpy as np
 import pytest
 from monocell.core.document.cell_file import read_cell
 from monocell.core.document.entries import object_entry
@@ -102,3 +103,23 @@ def test_what_belongs_to_a_library_stays_and_says_so(addon, scene, tmp_path, cap
     assert object_entry(after["box"]) == object_entry(before["box"])
     assert ob.data.library is not None
     assert "parts.blend and was not changed; make it local first" in capfd.readouterr().out
+
+
+def test_a_turn_in_edit_mode_that_is_taken_back_is_no_longer_shown(addon, scene):
+    box, undo_push = scene.objects["box"], addon.ops.ed.undo_push
+    stood = box.matrix_basis.copy()
+    addon.context.view_layer.objects.active = box
+    for message in ("opened", "seen", "chosen"):
+        undo_push(message=message)
+    addon.ops.object.mode_set(mode="EDIT")
+    undo_push(message="edit mode")
+    box.rotation_euler[0] += 0.5
+    addon.context.view_layer.update()
+    undo_push(message="turned")
+    for _ in range(4):
+        addon.ops.ed.undo()
+        addon.context.view_layer.update()
+    box = addon.context.scene.objects["box"]
+    assert np.allclose(box.matrix_basis, stood, atol=1e-6)
+    # Blender by itself goes on to show it turned
+    assert np.allclose(box.matrix_world, stood, atol=1e-6)

@@ -25,7 +25,7 @@ THINGS = (BALL, WEDGE, CRATE, CAN)
 COLORS = ((40, 150, 230), (70, 170, 60), (50, 70, 200), (200, 150, 60))
 
 
-def draw_scene(path):
+def draw_scene(path, *, chequered=True):
     """The things in plain colours, every face in its own shade, through the true lens."""
     i = bench_cell.INTRINSICS
     seen = seen_map(THINGS, bench_cell.CAMERA)
@@ -33,7 +33,7 @@ def draw_scene(path):
     origin, rays = bench_cell.CAMERA.rays_world(np.stack([u.ravel(), v.ravel()], 1))
     floor = (origin - rays * (origin[2] / np.minimum(rays[:, 2:], -1e-9)))[:, :2]
     chequer = (np.floor(floor / 0.1).sum(axis=1) % 2).reshape(i.height, i.width, 1)
-    picture = 165 + 16 * chequer * [1.0, 1.05, 1.1]
+    picture = 165 + 16 * chequered * chequer * [1.0, 1.05, 1.1]
     for index, color in enumerate(COLORS):
         here = seen.owner == index
         shade = np.array([1.0, 0.62, 0.8, 0.5, 0.55, 1.15])[seen.face[here] % 6]

@@ -12,19 +12,9 @@ from pathlib import Path
 import bpy
 
 sys.path.insert(0, str(Path(__file__).parent))
-from window_driver import (
-    NoView,
-    event,
-    found,
-    in_view,
-    job,
-    out,
-    place_of,
-    press,
-    view,
-)
+from window_driver import NoView, event, found, in_view, job, out, place_of, press, view
 
-PAUSE = 0.06
+PAUSE = 0.03
 PICKING = (
     *("box", "cylinder", "cone", "tube", "sphere", "prism"),
     *("upright_plane", "upright_line", "point"),
@@ -71,10 +61,11 @@ def somewhere():
     """A window place: often a corner of something on the picture, else anywhere in the view."""
     chance, (_, area, region) = rng.random(), view()
     camera = bpy.context.scene.camera
-    if chance < 0.6 and camera is not None and camera.type == "CAMERA":
+    through = area.spaces.active.region_3d.view_perspective == "CAMERA"
+    if chance < 0.6 and through and camera is not None and camera.type == "CAMERA":
         u, v = rng.choice(job["pixels"])
         x, y = place_of((u + rng.gauss(0, 1), v + rng.gauss(0, 1)))
-        return min(max(x, 0), 1599), min(max(y, 0), 999)
+        return min(max(x, 0), job["window"][0] - 1), min(max(y, 0), job["window"][1] - 1)
     if chance > 0.9:
         region = next(r for r in area.regions if r.type == "UI")
     x, y = rng.random() * region.width, rng.random() * region.height
@@ -270,7 +261,10 @@ def blender_is_busy():
 
 
 # what no click or key of a user does while Blender itself is modal, and Blender does not survive
-BY_SCRIPT = (another_editor, workspace, scene, maximise, leave_view, save_and_open, open_document)
+BY_SCRIPT = (
+    *(another_editor, workspace, scene, maximise, leave_view, save_and_open, open_document),
+    *(undo, change_object),
+)
 MOVES = {
     click: 26,
     move: 8,

@@ -19,9 +19,13 @@ from random_moves import (
     open_document,
     rng,
 )
-from window_driver import NoView, found, handlers, job, out, press, run, view
+from random_reach import BY_SCRIPT_TOO, REACHING
+from window_driver import NoView, found, handlers, job, out, press, run, shot, view
 
 CALM_EVERY = 30
+MOST_ESCAPES = 400
+CHOICES = MOVES | REACHING
+MIDDLE = (job["window"][0] // 2, job["window"][1] // 2)
 added = {}
 
 
@@ -45,16 +49,13 @@ def count_handlers():
 def calm():
     """End whatever runs, then see what is left over, and that undo and redo agree."""
     manager = bpy.context.window_manager
-    for _ in range(3):
-        if has_view():
-            press("ESC", 2, 2)
-            yield 3 * PAUSE
-    waited = 0
-    while manager.monocell_work.title and waited < 400:
-        manager.monocell_work.cancel = True
-        waited += 1
-        yield PAUSE
     window = manager.windows[0]
+    # work that runs takes Esc as its own until it has ended, and picking may wait under it
+    for i in range(MOST_ESCAPES):
+        if i > 1 and not window.modal_operators:
+            break
+        press("ESC", 2, 2)
+        yield 2 * PAUSE
     if not has_view():
         window.workspace = bpy.data.workspaces["Layout"]
         yield 4 * PAUSE
@@ -105,16 +106,18 @@ def steps():
     yield 0.5
     yield from open_document()
     for i in range(job["steps"]):
+        if i == job["steps"] // 2:
+            yield from shot("1_halfway")
         if not has_view():
-            press("ESC", 800, 500)
+            press("ESC", *MIDDLE)
             yield 3 * PAUSE
             if not has_view():
                 bpy.context.window_manager.windows[0].workspace = bpy.data.workspaces["Layout"]
                 yield 3 * PAUSE
             continue
-        chosen = rng.choices(list(MOVES), list(MOVES.values()))[0]
-        if chosen in BY_SCRIPT and blender_is_busy():
-            press("ESC", 800, 500)
+        chosen = rng.choices(list(CHOICES), list(CHOICES.values()))[0]
+        if chosen in (*BY_SCRIPT, *BY_SCRIPT_TOO) and blender_is_busy():
+            press("ESC", *MIDDLE)
             yield 2 * PAUSE
             continue
         note(f"{i} {chosen.__name__}")
@@ -125,6 +128,7 @@ def steps():
         if i % CALM_EVERY == CALM_EVERY - 1:
             yield from calm()
     yield from calm()
+    yield from shot("2_end")
 
 
 run(steps)

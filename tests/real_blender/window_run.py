@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 
-def in_window(blender, folder, steps, job, timeout=600):
+def in_window(blender, folder, steps, job, timeout=600, size=(1600, 1000)):
     """Run a script of steps in the window; the folder, what it found, and the finished process.
 
     MONOCELL_SCREENSHOTS names a folder that the screenshots are kept in.
@@ -19,7 +19,7 @@ def in_window(blender, folder, steps, job, timeout=600):
     script = Path(__file__).with_name(steps)
     try:
         run = blender.run(
-            *("--enable-event-simulate", "--window-geometry", 0, 0, 1600, 1000),
+            *("--enable-event-simulate", "--window-geometry", 0, 0, *size),
             *("--python", script, "--", folder / "job.json"),
             timeout=timeout,
         )
