@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import bench_cell
@@ -69,6 +70,25 @@ class CameraMoves:
         self.press("calibrate")
 
     does_calibrate_with_points.often = 2
+
+    def does_usual_work(self):
+        """What is usually done to two objects, in a file with nothing else."""
+        self.press("open_cell", filepath=str(self.bench / "bench.cell.json"))
+        self.press("add_box", picks=json.dumps(bench_cell.box_picks(self.rng.uniform(0, 2))))
+        self.press("add_cylinder", picks=json.dumps(bench_cell.drum_picks()), name="drum")
+        work = [
+            ("add_relation", {"name": "drum", "kind": "parallel", "to": "box.axis", "own": "axis"}),
+            ("remove_relation", {"name": "drum", "index": 0}),
+            ("set_motion", {"name": "drum", "kind": "movable", "mass": 1.0}),
+            ("take_colors", {"everything": True}),
+            ("take_textures", {"everything": True}),
+            ("align", {"name": "drum"}),
+            ("solve_again", {}),
+            ("propose", {"on": "floor", "doubtful": True}),
+        ]
+        for i in self.rng.permutation(len(work))[: int(self.rng.integers(2, 9))]:
+            verb, properties = work[i]
+            self.press(verb, **properties)
 
     def camera_file(self):
         """The bench's own camera, or one of a longer lens and no distortion."""

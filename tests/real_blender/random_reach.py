@@ -11,7 +11,18 @@ from pathlib import Path
 import bpy
 
 sys.path.insert(0, str(Path(__file__).parent))
-from random_moves import PAUSE, call, click, draw_box, move, note, rng, somewhere
+from random_moves import (
+    PAUSE,
+    blender_is_busy,
+    call,
+    click,
+    draw_box,
+    move,
+    note,
+    open_document,
+    rng,
+    somewhere,
+)
 from window_driver import found, job, out, press
 
 BOARDS = Path(__file__).resolve().parents[2] / "samples" / "02_cameras" / "board"
@@ -45,7 +56,10 @@ def waited(seconds=30.0):
 
 def review():
     """What was aligned or proposed is looked at, and taken or left."""
-    verb = rng.choice(["align", "align", "propose"])
+    verb = rng.choice(["align", "align", "align", "propose"])
+    if rng.random() < 0.5 and not blender_is_busy():
+        # another camera has no pose, and without one nothing can be shown
+        yield from open_document()
     if verb == "align":
         yield from draw_box()
     call(bpy.ops.monocell.look_through, "EXEC_DEFAULT", True)

@@ -20,7 +20,7 @@ from random_moves import (
     rng,
 )
 from random_reach import BY_SCRIPT_TOO, REACHING
-from window_driver import NoView, found, handlers, job, out, press, run, shot, view
+from window_driver import NoView, found, handlers, job, out, press, run, shot, show_sidebar
 
 CALM_EVERY = 30
 MOST_ESCAPES = 400
@@ -102,8 +102,8 @@ def steps():
     found["checks"], found["refusals"] = [], []
     bpy.context.preferences.view.filebrowser_display_type = "SCREEN"
     count_handlers()
-    view()[1].spaces.active.show_region_ui = True
-    yield 0.5
+    # Blender draws the panels of the tab that is chosen
+    yield from show_sidebar()
     yield from open_document()
     for i in range(job["steps"]):
         if i == job["steps"] // 2:

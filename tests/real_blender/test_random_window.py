@@ -15,7 +15,7 @@ from window_run import in_window
 pytestmark = [pytest.mark.real_blender, pytest.mark.slow]
 
 FIRST, LAST = map(int, os.environ.get("MONOCELL_SEEDS", "1-1").split("-"))
-STEPS = int(os.environ.get("MONOCELL_STEPS", "300"))
+STEPS = int(os.environ.get("MONOCELL_STEPS", "150"))
 # a software driver draws for most of the time, and a smaller window is drawn faster
 WINDOW = (1100, 760)
 
