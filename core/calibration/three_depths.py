@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 from ..arrays import Array, frozen
 
 PAIRS = ((1, 2), (0, 2), (0, 1))
-# relative: how real a root is, how well distances are met, how near two answers are the same
-REAL, FITS, SAME = 1e-3, 1e-6, 1e-6
+# relative: how real a root is, how well distances are met, how near two answers are the same: at a
+# double root polishing ends that far apart
+REAL, FITS, SAME = 1e-3, 1e-6, 3e-5
 POLISHING = 6
 
 

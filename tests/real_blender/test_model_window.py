@@ -89,7 +89,9 @@ def test_a_size_typed_in_the_sidebar_is_held_and_an_impossible_one_is_not(worked
 
 
 def test_objects_take_their_colours_from_the_picture(worked):
-    colors = {name: t.appearance.color for name, t in objects_of(worked, "coloured").items()}
+    things = objects_of(worked, "coloured")
+    # the ball may be hidden: a can with one pick on its top may be half as high again
+    colors = {name: things[name].appearance.color for name in ("box", "prism", "cylinder")}
     assert int(np.argmax(colors["box"])) == 0
     assert int(np.argmax(colors["prism"])) == 1
     assert int(np.argmax(colors["cylinder"])) == 2
